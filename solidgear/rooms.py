@@ -28,6 +28,7 @@ ADDITIONS = {
     "table": {
         "catalogue": "bearings.catalogue:Catalogue",
         "arrangement": "bearings.arrangement:Pairs",
+        "list of bearings": "bearings.scene_list:complete",
         "body": "parts.table:Parts",
     },
     "file": {

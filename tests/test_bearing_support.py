@@ -158,7 +158,10 @@ SEAT = {"name": "A", "y": 0.1, "seat_width": 0.02}
 NO_SUPPORT = (
     ({"support": "floatign", "stiffness": {"kxx": 1e8}}, 'did you mean "floating"'),
     ({"catalogue": {"designation": "6208", "support": "floating"}}, "not to its catalogue data"),
-    ({"support": "locating", "catalogue": {"designation": "NU 207"}}, "ribs being left out"),
+    (
+        {"support": "locating", "catalogue": {"designation": "NU 207"}},
+        "without ribs carries nothing along y: leave support out, or take one with ribs",
+    ),
     ({"support": "locating", "stiffness": {"kxx": 1e8}}, "holds nothing along y: write kyy"),
     ({"support": "floating", "hold": "pinned"}, "holds y as well"),
     (

@@ -218,7 +218,9 @@ def test_every_kind_carries_load_and_is_rated_by_its_boundary_dimensions_alone(k
     assert 5e7 < stiffness[1 if thrust else 2, 1 if thrust else 2] < 5e9
     found = ratings(data, made.inside)
     # catalogues of this size give C from 30 kN (balls) to 75 kN (rollers) with C0 near it
-    assert 15e3 < found.dynamic < 150e3 and 0.5 < found.static / found.dynamic < 3.0
+    # (balls on a sphere near a third: NTN gives a 1208 19.3 and 6.5 kN)
+    least = 0.3 if kind == "self_aligning" else 0.5
+    assert 15e3 < found.dynamic < 150e3 and least < found.static / found.dynamic < 3.0
 
 
 ONE_WAY = {"designation": "7208 B", "holds": "+y"}
@@ -227,10 +229,10 @@ BAD = (
     ({"designation": "NU 206", "elements": 40, "element_diameter": "9 mm"}, "more than fit on"),
     ({"designation": "6208", "conformity": 0.49}, "more than 0.5"),
     ({"designation": "hurz"}, "not understood"),
-    ({"designation": "6208-XYZ"}, 'did you mean "6208"'),
+    ({"designation": "6208-XYZ"}, '"XYZ" is no suffix that is known'),
     ({"designation": "6280"}, 'did you mean "6208"'),
     ({"designation": "6302-C3 C4"}, "two classes of clearance, C3 and C4"),
-    ({"designation": "7208 B C3"}, "not understood"),
+    ({"designation": "7208 B C3", "holds": "+y"}, "contact bearings have no clearance class"),
     (BACK_TO_BACK | {"preload": "90 kN", "static_rating": "20 kN"}, "beyond the static rating"),
     (ONE_WAY | {"load": {"y": "-1 kN"}}, r"holds the shaft towards \+y only"),
     ({"designation": "6206", "load_rating": "195 kN"}, "has a rating of"),
@@ -279,10 +281,10 @@ def test_tapered_bearings_of_series_330_are_known():
     [
         ("6208-2RS1/C3", "6208", "C3", "2RS1"),
         ("6302 2Z C2 P6 TN9", "6302", "C2", "2Z P6 TN9"),
-        ("NU 2207 ECP/C4", "NU 2207", "C4", "P"),
+        ("NU 2207 ECP/C4", "NU 2207", "C4", "ECP"),
         ("7014 C/P4A", "7014 C", None, "P4A"),
         ("7208 BECBM", "7208 B", None, "CB M"),
-        ("32018 X/Q", "32018", None, "Q"),
+        ("32018 X/Q", "32018", None, "X Q"),
     ],
 )
 def test_suffixes_tell_the_clearance_and_nothing_else_of_a_stiffness(

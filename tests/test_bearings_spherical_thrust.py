@@ -193,7 +193,7 @@ def test_designations_tell_boundary_dimensions(written, kind, sizes, clearance):
 SPHERICAL, WASHER = {"designation": "22210 E"}, {"designation": "51110", "holds": "+y"}
 BAD = (
     ({"designation": "51110"}, r'write holds = "\+y"'),
-    ({"designation": "22210 EK"}, 'did you mean "22210"'),
+    ({"designation": "22210 EK"}, 'tapered bore, K.* write it, as clearance = "20 um"'),
     ({"designation": "22201"}, 'did you mean "22210"'),
     (SPHERICAL | {"arrangement": "O"}, "has two rows of its own"),
     (SPHERICAL | {"preload": "100 N"}, "by a negative clearance and not along y"),

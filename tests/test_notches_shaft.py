@@ -300,7 +300,7 @@ def test_a_fit_gives_the_largest_interference():
         (f'{KEY}, mill = "60 mm"', "a disc mill runs out beyond square ends"),
         (f'{KEY}, radius = "7 mm"', "radii up to the depth"),
         (RING.replace('diameter = "33 mm"', 'depth = "18 mm"'), "cuts through the radius"),
-        (RING.replace("33 mm", "36 mm"), 'lies between the diameter of "right"'),
+        (RING.replace("33 mm", "36 mm"), 'lies below the surface of "right"'),
         (RING.replace('diameter = "33 mm", ', ""), "depth"),
         (RING.replace("0.1 mm", "2 mm"), "have radii up to"),
         (NUT.replace("M30x1.5", "M30x8"), "too coarse for a diameter of 30 mm"),

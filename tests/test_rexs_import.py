@@ -16,6 +16,7 @@ from solidgear.exchange.rexs.importing import imported
 from solidgear.exchange.rexs.notes import Notes
 from solidgear.exchange.rexs.pins import clamped_compliance
 from solidgear.exchange.rexs.reading import document_of
+from solidgear.trains.file.reading import load_train as train_as_written
 from solidgear.trains.load.contact import contact
 from validation import rexs_files
 
@@ -233,6 +234,24 @@ def test_bearings_by_their_inside_and_by_the_stiffness_at_a_point(tmp_path):
     K = right.stiffness
     assert np.diag(K).tolist() == pytest.approx([4e8, 1e8, 3e8, 3e4, 0.0, 3e4])
     assert K[2, 3] == pytest.approx(2e6)
+
+
+@pytest.mark.parametrize(
+    "word, ribs, holds",
+    [("both_directions", "both ways", None), ("positive", "one way", "+y"), ("no_direction", "none", None)],
+)  # fmt: skip
+def test_ribs_of_cylindrical_rollers_follow_the_file(tmp_path, word, ribs, holds):
+    box = helical()
+    place = next(k for k, (number, *_) in enumerate(box.components) if number == 12)
+    number, kind, name, attributes = box.components[place]
+    words = {"bearing_type": "radial_roller_bearing", "catalogue_designation": "NUP 209"}
+    words |= {f"radial_{kind_}_load_rating": (70, "kN") for kind_ in ("dynamic", "static")}
+    box.components[place] = (
+        number, kind, name, {**attributes, **words, "axial_force_absorption": word}
+    )  # fmt: skip
+    left = train_as_written(written(box, tmp_path)).shafts["output"].scene.bearings[0]
+    assert (left.catalogue.kind, left.catalogue.ribs) == ("cylindrical", ribs)
+    assert left.catalogue.holds == holds and left.floats == (ribs == "none")
 
 
 def test_a_planetary_stage(tmp_path):

@@ -12,6 +12,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.scene.closed_form import mass_properties
+from solidgear.cuts.features import RingGroove
 from solidgear.strength.load import driven
 from solidgear.strength.stress import shaft
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
@@ -140,6 +141,14 @@ def test_what_bearings_leave_open_moves_moment_and_stress(file):
     assert found.open_by == "estimated insides"
     known = stress_of(sg.load(FILLETED).with_changes(load={"z": 1e3}), asked=StressSettings(0.05))
     assert known.shafts[0].open == {} and known.shafts[0].open_moment is None
+
+
+def test_what_bearings_leave_open_moves_the_least_safety(file):
+    ring = RingGroove(name="ring", segment="left", y=0.06, width=2e-3, depth=1.5e-3)
+    scene = sg.load(file).with_changes(blends=(), features=(ring,))
+    (one,) = stress_of(scene).shafts
+    low, high = one.open_safety
+    assert 0.9 * high < low < high and low <= one.found.worst[0].rating.worst <= high
 
 
 def test_stress_by_shear_that_no_rating_holds_is_told(file):

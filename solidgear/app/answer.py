@@ -147,7 +147,7 @@ def _values(answered: Answered, units: Units, open_: OpenNumbers) -> Table:
         *ranges(open_, lambda row: row.quantity),
         text("error bar by", lambda row: row.how),
     ]
-    notes += filter(None, [remark(open_)])
+    notes += filter(None, [remark(open_, [row.quantity for row in answered.values])])
     return Table("", columns, answered.values, "\n".join(notes))
 
 

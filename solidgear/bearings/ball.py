@@ -145,3 +145,20 @@ class ThrustBallRow(BallRow):
         length = np.abs(axial)
         safe = np.where(length > 0, length, 1.0)
         return np.zeros_like(axial), axial / safe, safe, np.maximum(length - self.free, 0.0)
+
+
+@dataclass(frozen=True)
+class AligningBallRow(BallRow):
+    """One of two rows of balls on a spherical outer raceway: a ring that tilts freely.
+
+    The sphere is a groove whose centre of curvature is the middle of the bearing; ``outer`` is its
+    radius over the ball diameter, ``(1 / g + 1) / 2``.  All normals pass through the middle, so that
+    a tilt presses no ball.
+    """
+
+    @cached_property
+    def _felt(self) -> np.ndarray:
+        radial, axial = felt(self.pitch / 2, 0.0, self.azimuth)
+        both = np.stack([radial, axial])
+        both[..., 3:] = 0.0
+        return both

@@ -8,10 +8,11 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Iterator
-from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal
+from typing import TYPE_CHECKING, Annotated, Any, ClassVar, Literal, get_args
 
 from pydantic import BeforeValidator, Field, model_validator
 
+from solidgear.bearings.bearing_list import with_listed_by_variable
 from solidgear.bearings.designation import boundary
 from solidgear.bearings.kinds import SHARES, Shares
 from solidgear.core import (
@@ -48,16 +49,21 @@ Kind = Literal[
     "needle",
     "spherical",
     "thrust_ball",
+    "double_row_angular",
+    "four_point",
+    "self_aligning",
 ]
 Arrangement = Literal["single", "double_row", "tandem", "back_to_back", "face_to_face"]
 #: clearance classes of ISO 5753-1
-ClearanceClass = Literal["C2", "CN", "C3", "C4"]
-CLASSES = ("C2", "CN", "C3", "C4")
+ClearanceClass = Literal["C2", "CN", "C3", "C4", "C5", "CM"]
+CLASSES = get_args(ClearanceClass)
 PAIRED = ("tandem", "back_to_back", "face_to_face")
 #: direction along y in which the lower and the upper row of two hold the shaft
 WAYS = {"back_to_back": ("+y", "-y"), "face_to_face": ("-y", "+y")}
 #: other words of the field for arrangements
 _CALLED = {"o": "back_to_back", "db": "back_to_back", "x": "face_to_face", "df": "face_to_face"}
+#: words that a designation may give, beside sizes and clearance
+DESIGNATED = ("arrangement", "cage", "ribs")
 #: rolling elements of a row
 FEWEST, MOST = 3, 300
 
@@ -174,13 +180,25 @@ class Catalogue(Model):
     Attributes
     ----------
     kind : str
-        Kind: deep_groove, angular_contact, cylindrical, tapered, needle, spherical (rollers) or
-        thrust_ball.
+        Kind: deep_groove, angular_contact, cylindrical, tapered, needle, spherical (rollers),
+        thrust_ball, double_row_angular, four_point or self_aligning (balls).
     designation : str
-        Designation such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width and a class of
-        clearance where these are left out; seals, cages and tolerances are read and ignored.
+        Designation such as ``6208-2RS1/C3``: gives kind, bore, outer_diameter, width, ribs, contact
+        angle and a class of clearance where these are left out; seals, cages and tolerances are read
+        and ignored.  A list of bearings is looked up first.
     bore, outer_diameter, width : float
         Boundary dimensions, m; the bore of a drawn cup is the diameter under its rollers.
+    raceway : float or None
+        Diameter under needle rollers on an inner ring, m (F_w of makers).
+    cage : bool
+        False for a full complement of rollers, which leaves room for no cage.
+    ribs : {'none', 'one way', 'both ways'}
+        How ribs of cylindrical rollers hold the shaft along y: NU and N have none, NJ and NF hold
+        one way and need `holds` to do so, NUP holds both ways.
+    rib_stiffness : float or None
+        Stiffness of the ribs along y, N/m; by default a rough estimate.
+    listed : str
+        File and line of the list of bearings that the data come from; empty for none.
     load_rating, static_rating : float or None
         Basic dynamic and static radial load rating, N; for a pair those of one bearing, for a thrust
         bearing its axial ones.
@@ -208,7 +226,8 @@ class Catalogue(Model):
         Direction in which single rows and tandems with a contact angle keep the shaft from moving;
         they need it, since mounting decides it, or else `arrangement` of the scene.
     clearance : float or str
-        Radial internal clearance, m, or a class of ISO 5753-1, taken in its middle.
+        Radial internal clearance, m, or a class of ISO 5753-1 (CM: of electric motors), taken in its
+        middle.
     shaft_interference, housing_interference : float
         Interference of the fits, on the diameter, m.
     inner_ring_warmer : float
@@ -243,6 +262,11 @@ class Catalogue(Model):
     bore: PositiveLength
     outer_diameter: PositiveLength
     width: PositiveLength
+    raceway: PositiveLength | None = None
+    cage: bool = True
+    ribs: Literal["none", "one way", "both ways"] = "none"
+    rib_stiffness: AxialSpring | None = None
+    listed: str = ""
     load_rating: PositiveLoad | None = None
     static_rating: PositiveLoad | None = None
     fatigue_limit: PositiveLoad | None = None
@@ -279,7 +303,12 @@ class Catalogue(Model):
         if "support" in data:
             reason = "belongs to the bearing, not to its catalogue data"
             raise SceneError(reason, path=("support",), value=show(data["support"]))
-        if isinstance(data.get("designation"), str) and data["designation"]:
+        data = with_listed_by_variable(data, Catalogue)
+        if (
+            isinstance(data.get("designation"), str)
+            and data["designation"]
+            and not data.get("listed")
+        ):
             data = _with_boundary(data)
         super().__init__(**data)
 
@@ -291,7 +320,18 @@ class Catalogue(Model):
     @property
     def one_sided(self) -> bool:
         """True where the bearing holds the shaft in one direction along y only."""
+        by_ribs = self.ribs == "one way" and self.holds is not None
+        return by_ribs or self.faces_one_way
+
+    @property
+    def faces_one_way(self) -> bool:
+        """True where the contact angle of all rows holds the shaft in one direction along y."""
         return self.nature.holds == "one way" and self.arrangement in ("single", "tandem")
+
+    @property
+    def ribbed(self) -> bool:
+        """True where ribs hold the shaft along y."""
+        return self.ribs == "both ways" or (self.ribs == "one way" and self.holds is not None)
 
     @property
     def angled(self) -> bool:
@@ -311,7 +351,7 @@ class Catalogue(Model):
     @property
     def floats(self) -> bool:
         """True for kinds that carry nothing along y."""
-        return self.nature.holds == "nothing"
+        return self.nature.holds == "nothing" and not self.ribbed
 
     @property
     def balls(self) -> bool:
@@ -355,7 +395,21 @@ class Catalogue(Model):
         inner += ["conformity"] * self.grooved + ["element_length"] * (not self.balls)
         if self.angled:
             inner.append("contact_angle")
+        if self.ribbed:
+            inner.append("rib_stiffness")
         return tuple(name for name in inner if getattr(self, name) is None)
+
+    @property
+    def written_too(self) -> tuple[str, ...]:
+        """Fields that a file has even where they have their default, for the designation says
+        something else.
+        """
+        if not self.designation or self.listed:
+            return ("clearance",)
+        said = boundary(self.designation)
+        usual = {key: type(self).model_fields[key].get_default() for key in DESIGNATED}
+        unlike = (k for k in DESIGNATED if getattr(self, k) == usual[k] != getattr(said, k))
+        return ("clearance", *(key for key in unlike if getattr(said, key) is not None))
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Catalogue:
@@ -372,6 +426,13 @@ def _with_boundary(data: dict[str, Any]) -> dict[str, Any]:
         raise SceneError(error.reason, path=("designation",), value=error.value) from None
     fields = {key: value for key, value in standard._asdict().items() if value is not None}
     del fields["ignored"]
+    if fields.pop("tapered_bore") and data.get("clearance") is None:
+        raise SceneError(
+            "has a tapered bore, K: its clearance is what is left once it is driven up; write it, as "
+            'clearance = "20 um"',
+            path=("clearance",),
+            value=show(data["designation"]),
+        )
     if "kind" in data and data["kind"] != standard.kind:
         raise SceneError(
             f"does not fit the designation {show(data['designation'])}, which is {standard.kind}",
@@ -399,7 +460,7 @@ def catalogue_problems(data: Catalogue) -> Iterator[SceneError]:
 def _belongs(data: Catalogue) -> Iterator[SceneError]:
     """Yield problems of keys that the kind or the arrangement does not have."""
     kind = data.kind.replace("_", " ")
-    if data.kind in ("spherical", "thrust_ball"):
+    if data.kind in _REFUSED:
         yield from _by_nature(data, kind)
     elif not data.angled:
         if data.contact_angle is not None:
@@ -423,7 +484,16 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
             f"two rows of {kind} bearings are back_to_back, face_to_face or tandem",
             path=("arrangement",),
         )
-    if data.one_sided and data.holds is None:
+    if data.kind != "cylindrical":
+        for key in ("ribs", "rib_stiffness"):
+            if getattr(data, key) not in (None, "none"):
+                yield SceneError(f"a {kind} bearing has no ribs to give: leave it out", path=(key,))
+    elif data.rib_stiffness is not None and not data.ribbed:
+        yield SceneError(
+            'no rib holds this bearing: write ribs = "both ways", or "one way" with holds',
+            path=("rib_stiffness",),
+        )
+    if data.faces_one_way and data.holds is None:
         yield SceneError(
             f"{data.arrangement} {kind} bearings hold the shaft in one direction only: write "
             'holds = "+y" if this one keeps it from moving towards +y, else "-y", or for a pair '
@@ -439,6 +509,8 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
             yield SceneError(
                 f"belongs to {owner}; a {kind} bearing has none: leave it out", path=(key,)
             )
+    if not data.cage and (data.balls or data.barrels):
+        yield SceneError(f"a {kind} bearing has a cage: leave it out", path=("cage",))
     if data.preload_spring is not None and data.speed:
         yield SceneError(
             "a pair on a preload spring is solved at rest only: leave out speed, or the spring",
@@ -456,28 +528,36 @@ def _belongs(data: Catalogue) -> Iterator[SceneError]:
         )
 
 
+_TWO_ROWS = {
+    "arrangement": "has two rows of its own",
+    "preload": "is preloaded by a negative clearance and not along y",
+}
+_AT_REST = {"speed": "is computed at rest only, without what speed does to its balls"}
+#: keys that a kind does not have, with the reason
+_REFUSED = {
+    "spherical": {**_TWO_ROWS, "profile": "has barrels, whose profile is their conformity"},
+    "double_row_angular": {"arrangement": "has two rows of its own, back to back"},
+    "four_point": {**_TWO_ROWS, **_AT_REST},
+    "self_aligning": {**_TWO_ROWS, **_AT_REST},
+    "thrust_ball": {
+        "arrangement": "has one row and holds one way (of two, write holds at each)",
+        "contact_angle": "stands at 90 degrees",
+        "clearance": "has no clearance across the shaft",
+        "shaft_interference": "is not made tighter by its fit",
+        "housing_interference": "is not made tighter by its fit",
+        "inner_ring_warmer": "is not made tighter by a warm shaft",
+        **_AT_REST,
+    },
+}
+
+
 def _by_nature(data: Catalogue, kind: str) -> Iterator[SceneError]:
-    """Yield problems of keys that spherical and thrust bearings do not have."""
-    if data.kind == "spherical":
-        kind = "spherical roller"
-        refused = {
-            "arrangement": "has two rows of its own",
-            "preload": "is preloaded by a negative clearance and not along y",
-            "profile": "has barrels, whose profile is their conformity",
-        }
-    else:
-        refused = {
-            "arrangement": "has one row and holds one way (of two, write holds at each)",
-            "contact_angle": "stands at 90 degrees",
-            "clearance": "has no clearance across the shaft",
-            "shaft_interference": "is not made tighter by its fit",
-            "housing_interference": "is not made tighter by its fit",
-            "inner_ring_warmer": "is not made tighter by a warm shaft",
-            "speed": "is computed at rest only, without what speed does to its balls",
-        }
-    for key, reason in refused.items():
+    """Yield problems of keys that the kind does not have."""
+    names = {"spherical": "spherical roller", "self_aligning": "self-aligning ball"}
+    for key, reason in _REFUSED[data.kind].items():
         if getattr(data, key) != type(data).model_fields[key].get_default():
-            yield SceneError(f"a {kind} bearing {reason}: leave it out", path=(key,))
+            name = names.get(data.kind, kind)
+            yield SceneError(f"a {name} bearing {reason}: leave it out", path=(key,))
 
 
 def _fits(data: Catalogue) -> Iterator[SceneError]:
@@ -489,6 +569,12 @@ def _fits(data: Catalogue) -> Iterator[SceneError]:
             path=("element_diameter",),
         )
         return
+    if data.raceway is not None and not data.bore < data.raceway < data.outer_diameter:
+        yield SceneError(
+            f"must lie between bore and outer_diameter ({data.bore:.6g} and "
+            f"{data.outer_diameter:.6g} m)",
+            path=("raceway",),
+        )
     if data.element_length is not None and data.element_length > data.width:
         yield SceneError(
             f"must not be longer than the width ({data.width:.6g} m)", path=("element_length",)

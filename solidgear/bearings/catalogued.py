@@ -8,13 +8,14 @@ from typing import Any, Literal
 
 import numpy as np
 
-from solidgear.bearings.ball import BallRow, ThrustBallRow
+from solidgear.bearings.ball import AligningBallRow, BallRow, ThrustBallRow
 from solidgear.bearings.catalogue import WAYS, Catalogue
 from solidgear.bearings.clearance import clearance_at_work
 from solidgear.bearings.equivalent import static_factors
 from solidgear.bearings.geometry import inner_geometry
 from solidgear.bearings.inside import Inside
 from solidgear.bearings.preload import SprungRow, pushed
+from solidgear.bearings.ribs import Ribs, estimated_stiffness
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing, Row
 from solidgear.bearings.spherical import SphericalRow
@@ -58,17 +59,28 @@ def catalogued(
         preloaded = _preloaded(data, rows, preload_factor)
     except SolidgearError as error:
         raise SceneError(str(error), path=("preload",)) from None
-    return Catalogued(RollingBearing(preloaded, floats), inside, geometry.estimated, clearance)
+    ribs = None
+    if data.ribbed and not floats:
+        stiffness = data.rib_stiffness or estimated_stiffness(inside, end)
+        ribs = Ribs(stiffness, data.holds if data.ribs == "one way" else None)
+    bearing = RollingBearing(preloaded, floats, ribs)
+    return Catalogued(bearing, inside, geometry.estimated, clearance)
 
 
 def _placed(data: Catalogue, inside: Inside, clearance: float) -> list[BallRow | RollerRow]:
     """Return rows at their places along y, each turned by half a pitch against the one before."""
     first = -1 if data.holds == "-y" else 1
     turn = math.pi / inside.elements
-    if data.own_rows > 1:  # the rows face each other: their normals meet in the middle
+    if data.own_rows > 1:
+        placed = data.nature.placed
+        # the normals meet in the middle, or the rows stand back to back; four points are two
+        # contacts of the same balls
+        apart = (data.row_distance or data.width / 2) / 2 if placed == "apart" else 0.0
+        lower, upper = (1, -1) if placed == "apart" else (-1, 1)
+        start = 0.0 if placed == "crossing" else turn
         return [
-            _row(data, inside, clearance, side, 0.0, start)
-            for side, start in ((-1, 0.0), (1, turn))
+            _row(data, inside, clearance, lower, -apart, 0.0),
+            _row(data, inside, clearance, upper, apart, start),
         ]
     if data.arrangement == "single":
         return [_row(data, inside, clearance, first, 0.0, 0.0)]
@@ -96,7 +108,8 @@ def _row(
     }
     if data.balls:
         inner, outer = inside.conformity
-        kind = ThrustBallRow if data.kind == "thrust_ball" else BallRow
+        kinds = {"thrust_ball": ThrustBallRow, "self_aligning": AligningBallRow}
+        kind = kinds.get(data.kind, BallRow)
         return kind(inner=inner, outer=outer, **common)
     if data.barrels:
         inner, outer = inside.conformity

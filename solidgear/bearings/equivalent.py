@@ -52,7 +52,7 @@ _STEEP = {
     45: (0.33, 1.34, 0.50),
 }
 #: degrees at which a deep groove bearing works, by its class of clearance
-_CLEARANCE_ANGLE = {"C2": 5, "CN": 5, "C3": 10, "C4": 15}
+_CLEARANCE_ANGLE = {"C2": 5, "CN": 5, "CM": 5, "C3": 10, "C4": 15, "C5": 15}
 #: two rows against each other, over one: of balls and of rollers
 _BOTH = {True: 1.63, False: 1.67}
 #: ISO 76:2006, Table 2: Y_0 of a single row over the contact angle in degrees
@@ -98,7 +98,7 @@ def _depth(data: Catalogue, inside: Inside, share: float) -> float:
     """Return the axial load over the squares of the balls that carry it, N/mm^2, from the share of
     C_0.
     """
-    if not data.balls or inside.thrust:
+    if not data.balls or inside.thrust or inside.sphere:
         return 0.0
     # of two rows against each other one carries all of it
     rows = 2 if data.opposed else 1
@@ -114,7 +114,10 @@ def factors(data: Catalogue, inside: Inside, depth: float) -> Factors:
         return Factors(0.0, (0.0, 1.0), (0.0, 1.0))
     if not (data.balls or data.angled):
         return Factors(math.inf, (1.0, 0.0), (1.0, 0.0))
-    x, e, y = _ball_factors(data, inside, depth) if data.balls else _cone_factors(inside)
+    if inside.sphere:
+        x, e, y = _sphere_factors(inside)
+    else:
+        x, e, y = _ball_factors(data, inside, depth) if data.balls else _cone_factors(inside)
     if not data.opposed:
         return Factors(e, (1.0, 0.0), (x, y))
     x, y = _BOTH[data.balls] * x, _BOTH[data.balls] * y
@@ -125,6 +128,14 @@ def _cone_factors(inside: Inside) -> tuple[float, float, float]:
     """Return X, e and Y of tapered rollers."""
     slope = math.tan(inside.angle)
     return 0.4, 1.5 * slope, 0.4 / slope
+
+
+def _sphere_factors(inside: Inside) -> tuple[float, float, float]:
+    """Return X, e and Y of one of two rows of balls on a sphere, of which both have 0.65 and
+    ``0.65 cot(a)``.
+    """
+    slope = math.tan(inside.angle)
+    return 0.65 / _BOTH[True], 1.5 * slope, 0.65 / _BOTH[True] / slope
 
 
 def _ball_factors(data: Catalogue, inside: Inside, depth: float) -> tuple[float, float, float]:
@@ -169,6 +180,6 @@ def static_factors(data: Catalogue, inside: Inside) -> tuple[float, float]:
         return 0.0, 1.0
     if not data.angled:
         return (0.6, 0.5) if data.balls else (1.0, 0.0)
-    if data.balls:
+    if data.balls and not inside.sphere:
         return 0.5, float(np.interp(math.degrees(inside.angle), _STATIC_ANGLES, _STATIC))
     return 0.5, 0.22 / math.tan(inside.angle)

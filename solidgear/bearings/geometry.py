@@ -20,7 +20,7 @@ from typing import NamedTuple
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.designation import usual_angle
 from solidgear.bearings.inside import Inside
-from solidgear.bearings.kinds import SHARES, Share
+from solidgear.bearings.kinds import FULL, SHARES, Share
 from solidgear.bearings.rating import rated, static_ball_rating, static_roller_rating
 from solidgear.core import SceneError
 
@@ -63,19 +63,20 @@ def _angle(data: Catalogue, end: str) -> float:
     shares = SHARES[data.kind]
     if not data.angled or data.contact_angle is not None:
         return data.contact_angle or shares.angle
-    usual = usual_angle(data.designation)
+    usual = usual_angle(data.designation, data.kind)
     return (usual or shares.angle) * (1 + _SIGN[end] * shares.angle_spread)
 
 
 def _start(data: Catalogue, end: str) -> Inside:
     """Return the inner geometry by room and filling alone."""
     shares = SHARES[data.kind]
-    room = data.outer_diameter - data.bore
+    room = data.outer_diameter - (data.raceway or data.bore)
     # larger elements are fewer, and softer together
     diameter = data.element_diameter or _at(shares.diameter, end, -1) * room
     pitch = data.pitch_diameter or (data.bore + data.outer_diameter) / 2
     if data.kind == "needle" and data.pitch_diameter is None:
-        pitch = data.bore + diameter  # needles run on the shaft
+        # needles run on the shaft, or on an inner ring
+        pitch = (data.raceway or data.bore) + diameter
     length = 0.0
     if not data.balls:
         length = data.element_length or _at(shares.length, end) * data.width
@@ -84,10 +85,23 @@ def _start(data: Catalogue, end: str) -> Inside:
     if elements is None and data.kind == "deep_groove":
         elements = round(1 + CONRAD / (2 * math.asin(diameter / pitch)) + 0.6 * _SIGN[end])
     elif elements is None:
-        elements = round(_at(shares.filling, end) * touching)
+        filling = shares.filling if data.cage else FULL
+        elements = round(_at(filling, end) * touching)
     elements = max(3, min(elements, int(touching + 1e-9)))
-    conformity = data.conformity or shares.conformity[1 + _SIGN[end]]
-    return Inside(elements, diameter, length, pitch, _angle(data, end), conformity)
+    inner, outer = data.conformity or shares.conformity[1 + _SIGN[end]]
+    return _on_sphere(
+        data, Inside(elements, diameter, length, pitch, _angle(data, end), (inner, outer))
+    )
+
+
+def _on_sphere(data: Catalogue, inside: Inside) -> Inside:
+    """Return an inside with the outer raceway that its kind has: a groove, or a sphere about the
+    middle.
+    """
+    if not data.nature.sphere:
+        return inside
+    outer = (1 / inside.gamma + 1) / 2
+    return replace(inside, conformity=(inside.conformity[0], outer))
 
 
 #: of the ball diameter, in the rating of a bearing (ISO 281)
@@ -106,7 +120,7 @@ def _balls(data: Catalogue, end: str) -> Inside:
     for count in counts:
         diameter = data.element_diameter or _ball_for(replace(guess, elements=count), rating, data)
         if count * math.asin(min(diameter / guess.pitch, 1.0)) < math.pi:
-            inside = replace(guess, elements=count, diameter=diameter)
+            inside = _on_sphere(data, replace(guess, elements=count, diameter=diameter))
             candidates.append((_misfit(inside, rating, usual, data), inside))
     if not candidates:
         raise _no_inside(data)
@@ -137,7 +151,7 @@ def _ball_for(inside: Inside, rating: float, data: Catalogue) -> float:
     widest = 0.48 * (data.outer_diameter - data.bore)
     diameter, power, last = inside.diameter, USUAL_POWER, (0.0, 0.0)
     for _ in range(40):
-        computed = rated(data, replace(inside, diameter=diameter))
+        computed = rated(data, _on_sphere(data, replace(inside, diameter=diameter)))
         if all(last) and computed != last[1]:
             # steps of a secant, where the rating grows as it should
             grown = math.log(computed / last[1]) / math.log(diameter / last[0])

@@ -24,6 +24,11 @@ class Inside:
         return self.angle > math.radians(89)
 
     @property
+    def sphere(self) -> bool:
+        """Whether balls run on a sphere about the middle of the bearing, wider than any groove."""
+        return not self.length and self.conformity[1] > 1
+
+    @property
     def gamma(self) -> float:
         """``Dw cos(a) / Dpw``."""
         return self.diameter * math.cos(self.angle) / self.pitch

@@ -2,9 +2,9 @@
 
 A further kind of balls, rollers or barrels is its name in ``Kind`` of
 :mod:`solidgear.bearings.catalogue` and an entry of ``SHARES``.  How makers write it is a line in
-``_WRITTEN`` of :mod:`solidgear.bearings.designation`, with a table of sizes where none fits; keys
-that it refuses stand in ``_by_nature`` of the catalogue, classes of clearance in ``TABLES`` of
-:mod:`solidgear.bearings.clearance`.  Other elements need a row with ``load``, ``tangent`` and
+``_families`` of :mod:`solidgear.bearings.designation`, with a table of sizes in
+:mod:`solidgear.bearings.plan` where none fits; keys that it refuses stand in ``_by_nature`` of the
+catalogue, classes of clearance in ``TABLES`` of :mod:`solidgear.bearings.clearance`.  Other elements need a row with ``load``, ``tangent`` and
 ``contacts`` of a motion (:mod:`solidgear.bearings.row` says what holds of all) and its line in
 ``_row`` of :mod:`solidgear.bearings.catalogued`.  A pair of bearings is the ``arrangement`` of the
 scene.
@@ -38,16 +38,23 @@ class Shares(NamedTuple):
     #: where it has one) and stiffer end; of spherical rollers over twice the radius of their
     #: contour
     conformity: tuple[tuple[float, float], ...] = ((0.53, 0.53), (0.52, 0.53), (0.515, 0.515))
-    #: barrels on a sphere let a ring tilt freely
+    #: barrels, and balls on a sphere, let a ring tilt freely
     elements: Literal["balls", "rollers", "barrels"] = "rollers"
     #: along y, a single row of a kind with a contact angle, else the bearing
     holds: Literal["both ways", "one way", "nothing"] = "both ways"
     angled: bool = False  #: whether it has a contact angle that data may give
     rows: int = 1  #: of a single bearing
+    #: of two rows: normals that meet in the middle of the bearing, both on the same elements, or
+    #: rows side by side back to back
+    placed: Literal["meeting", "crossing", "apart"] = "meeting"
+    sphere: bool = False  #: whether the outer raceway is a sphere about the middle
 
 
 NONE = Share(0.0, 0.0)
-#: read off bearings whose inside is published, see :mod:`solidgear.bearings.geometry`
+#: of rollers without a cage
+FULL = Share(0.97, 0.02)
+#: read off bearings whose inside is published, see :mod:`solidgear.bearings.geometry`; of two rows of
+#: balls off the C and C0 of makers
 SHARES = {
     "deep_groove": Shares(Share(0.30, 0.015), NONE, Share(0.66, 0.06), 1.3, elements="balls"),
     "angular_contact": Shares(
@@ -59,6 +66,42 @@ SHARES = {
         elements="balls",
         holds="one way",
         angled=True,
+    ),
+    "double_row_angular": Shares(
+        Share(0.30, 0.02),
+        NONE,
+        Share(0.66, 0.08),
+        1.3,
+        angle=math.radians(30),
+        angle_spread=0.15,
+        elements="balls",
+        angled=True,
+        rows=2,
+        placed="apart",
+    ),
+    "four_point": Shares(
+        Share(0.31, 0.015),
+        NONE,
+        Share(0.85, 0.05),
+        1.3,
+        angle=math.radians(35),
+        elements="balls",
+        angled=True,
+        rows=2,
+        placed="crossing",
+    ),
+    "self_aligning": Shares(
+        Share(0.22, 0.02),
+        NONE,
+        Share(0.83, 0.05),
+        1.3,
+        angle=math.radians(10),
+        angle_spread=0.15,
+        conformity=((0.535, 0.535), (0.53, 0.53), (0.52, 0.52)),
+        elements="balls",
+        angled=True,
+        rows=2,
+        sphere=True,
     ),
     "cylindrical": Shares(
         Share(0.27, 0.015), Share(0.65, 0.08), Share(0.80, 0.06), 1.1, holds="nothing"

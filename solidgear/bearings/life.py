@@ -39,7 +39,13 @@ import numpy as np
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.equivalent import Equivalent, equivalent_load, static_load
-from solidgear.bearings.rating import ROW_POWER, STATIC_PRESSURE, Ratings, ratings
+from solidgear.bearings.rating import (
+    ROW_POWER,
+    SPHERE_PRESSURE,
+    STATIC_PRESSURE,
+    Ratings,
+    ratings,
+)
 from solidgear.bearings.reference_life import Damage, Ring, damage, raceways
 from solidgear.bearings.row import Contacts
 from solidgear.core.scene.lubrication import Lubrication
@@ -50,6 +56,8 @@ LIFE_POWER = {True: 3.0, False: 10 / 3}
 ROUNDING = 1e-9
 #: of C: beyond this equivalent load ISO 281 does not vouch for its life
 MOST_LOAD = 0.5
+#: of the radial load: what ribs of cylindrical rollers may carry along y (SKF, Rolling bearings)
+MOST_ON_RIBS = 0.5
 
 
 class Modified(NamedTuple):
@@ -133,7 +141,10 @@ def life(
         static_safety=_quotient(rated.static, static),
         pressure=tuple((float(row.inner.max()), float(row.outer.max())) for row in rows),
         rated=rated,
-        notes=tuple(_notes(data, rated, rows, equivalent.load, static)),
+        notes=(
+            *_on_ribs(data, equivalent),
+            *_notes(data, rated, rows, equivalent.load, static),
+        ),
     )
     if math.isinf(result.reference):
         return replace(result, without="it carries nothing")
@@ -190,6 +201,16 @@ def _modified(
     return replace(result, modified=modified)
 
 
+def _on_ribs(data: Catalogue, equivalent: Equivalent) -> Iterator[str]:
+    """Yield a sentence on ribs that carry more than they may."""
+    if data.ribbed and equivalent.axial > MOST_ON_RIBS * equivalent.radial:
+        yield (
+            f"it takes {equivalent.axial:.5g} N along the shaft on its ribs, above half of its radial "
+            f"load of {equivalent.radial:.5g} N, which makers allow at most (SKF); its life counts "
+            "the radial load alone (ISO 281)"
+        )
+
+
 def _notes(
     data: Catalogue, rated: Ratings, rows: tuple[Contacts, ...], dynamic: float, static: float
 ) -> Iterator[str]:
@@ -204,7 +225,7 @@ def _notes(
             f"dynamic rating C; ISO 281 holds up to {MOST_LOAD:g} of it"
         )
     most = max(float(max(row.inner.max(), row.outer.max())) for row in rows)
-    limit = STATIC_PRESSURE[data.balls]
+    limit = SPHERE_PRESSURE if data.nature.sphere else STATIC_PRESSURE[data.balls]
     if most > limit:
         yield (
             f"a contact pressure of {most / 1e6:.0f} MPa is beyond the {limit / 1e6:.0f} MPa of its "

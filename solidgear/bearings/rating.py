@@ -8,7 +8,8 @@
 (N, mm; g = Dw cos(a) / Dpw; i rows).  Q_0 is the load under which a ball presses a ring with 4200
 MPa: the f_0 of ISO 76 is ``Q_0 / (5 Dw^2)``, and is computed here by Hertz's contact and not read
 from its table.  Thrust balls stand at 90 degrees, and their ratings are axial; ISO 281's Table 4 of
-their f_c is ``36.7 (100 Dw / Dpw)^0.3`` to three digits.
+their f_c is ``36.7 (100 Dw / Dpw)^0.3`` to three digits.  Balls on a sphere have its radius in f_c,
+and 4600 MPa in Q_0.
 """
 
 from __future__ import annotations
@@ -24,6 +25,10 @@ from solidgear.bearings.kinds import SHARES
 
 #: Pa, ISO 76: beyond it the dent is above 1e-4 of the element's diameter; of balls and of rollers
 STATIC_PRESSURE = {True: 4200e6, False: 4000e6}
+#: Pa, of self-aligning balls
+SPHERE_PRESSURE = 4600e6
+#: of ISO/TR 1281-1, by which ISO 281's factors of two rows in deep grooves differ from those of one
+_TWO_GROOVES = 0.90 / 0.95
 #: Pa, of ISO 76
 _STATIC_E = 207e9
 #: of several rows in one rating
@@ -45,6 +50,8 @@ def ball_rating(inside: Inside, factor: float = 1.3, rows: int = 1) -> float:
     both_rings = (1 + ratio ** (10 / 3)) ** -0.3
     material = 39.9 * both_rings * g**0.3 * (1 - g) ** 1.39 / (1 + g) ** (1 / 3)
     material *= (2 * inner / (2 * inner - 1)) ** 0.41
+    if rows > 1 and not inside.angle:
+        material *= _TWO_GROOVES
     angle = math.cos(inside.angle)
     return factor * material * (rows * angle) ** 0.7 * inside.elements ** (2 / 3) * size
 
@@ -72,7 +79,8 @@ def static_ball_rating(inside: Inside) -> float:
         outer=outer,
         E=_STATIC_E,
     )
-    ball = min(ring.load(STATIC_PRESSURE[True]) for ring in row.rings)
+    pressure = SPHERE_PRESSURE if inside.sphere else STATIC_PRESSURE[True]
+    ball = min(ring.load(pressure) for ring in row.rings)
     return inside.elements * ball * (1.0 if inside.thrust else 0.2 * math.cos(inside.angle))
 
 
@@ -80,6 +88,8 @@ def _rated_conformity(inside: Inside) -> tuple[float, float]:
     """Return the groove radii over ball diameter, inner and outer, for which ISO 281 and ISO 76
     rate balls.
     """
+    if inside.sphere:
+        return SHARES["self_aligning"].conformity[1][0], inside.conformity[1]
     return SHARES["thrust_ball" if inside.thrust else "deep_groove"].conformity[1]
 
 

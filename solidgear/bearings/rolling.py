@@ -10,6 +10,7 @@ from typing import Protocol
 import numpy as np
 
 from solidgear.bearings.newton import NothingHolds, settle
+from solidgear.bearings.ribs import Ribs
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.sliding import FURTHEST, condense_y, slide_to_balance
 from solidgear.core import DOF_NAMES, SolidgearError
@@ -60,6 +61,7 @@ class RollingBearing:
     #: one of its rings slides along y in its seat, without friction: at every motion the rows stand
     #: where nothing presses them along y, and the stiffness is condensed
     floats: bool = False
+    ribs: Ribs | None = None  #: that hold the shaft along y beside the rows
 
     @cached_property
     def size(self) -> np.ndarray:
@@ -77,11 +79,16 @@ class RollingBearing:
         limit = np.full(motion.shape[:-1], FURTHEST)
         return slide_to_balance(self._load, self._tangent, motion, -limit, limit)
 
+    @property
+    def _carriers(self) -> tuple[Row | Ribs, ...]:
+        """Rows, and ribs where there are some."""
+        return self.rows if self.ribs is None else (*self.rows, self.ribs)
+
     def _load(self, motion: np.ndarray) -> np.ndarray:
-        return sum((row.load(motion) for row in self.rows), np.zeros(()))
+        return sum((part.load(motion) for part in self._carriers), np.zeros(()))
 
     def _tangent(self, motion: np.ndarray) -> np.ndarray:
-        return sum((row.tangent(motion) for row in self.rows), np.zeros(()))
+        return sum((part.tangent(motion) for part in self._carriers), np.zeros(()))
 
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Return the load (..., 6) at motions (..., 6)."""

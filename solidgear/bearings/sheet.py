@@ -72,8 +72,10 @@ def _sheet(name: str, blocks: Sequence[str | Table], data: Mapping[str, Any]) ->
 
 def _at_load(fact: BearingFacts) -> Iterator[str | Table]:
     """Yield the inside of a bearing, and its load, displacement, stiffness and contacts."""
-    ignored = boundary(fact.data.designation).ignored if fact.data.designation else ""
-    unused = f" (read and ignored: {ignored})" if ignored else ""
+    data = fact.data
+    unused = f" ({data.listed})" if data.listed else ""
+    if data.designation and not data.listed and (ignored := boundary(data.designation).ignored):
+        unused = f" (read and ignored: {ignored})"
     support = f", {fact.bearing.support}" if fact.bearing.support else ""
     yield f"Bearing {fact.name!r}: {fact.called}{unused}{support}, {fact.bearing.status}"
     yield _inside(fact)

@@ -17,7 +17,7 @@ from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.catalogue import Preload, catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
-from solidgear.core import Bearing, Scene, SceneError
+from solidgear.core import Bearing, Scene, SceneError, SolidgearError, listed
 from solidgear.core.scene.acting import station_loads
 
 if TYPE_CHECKING:
@@ -96,7 +96,10 @@ def solved(
     if body is not None and wants_equilibrium(scene):
         loads = {name: choice.load * six for name, six in station_loads(scene).items()}
         around = scene.housing or scene.housing_axial
-        settled = equilibrium(body, mounted(scene, bearings_made), loads, around, start)
+        try:
+            settled = equilibrium(body, mounted(scene, bearings_made), loads, around, start)
+        except SolidgearError as error:
+            raise SolidgearError(f"{error}{_unused_ribs(scene)}") from None
     motion, tangent = {}, {}
     for name, k in places.items():
         data = catalogue_of(scene.bearings[k])
@@ -121,6 +124,18 @@ def solved(
             raise located(SceneError(reason), k)
     bearings = tuple(_with_stiffness(b, tangent) for b in scene.bearings)
     return Solved(scene.with_changes(bearings=bearings), bearings_made, motion, settled)
+
+
+def _unused_ribs(scene: Scene) -> str:
+    """Return the end of a sentence on ribs that could hold the shaft; empty where there are none."""
+    names = [
+        repr(b.name)
+        for b in scene.bearings
+        if (data := catalogue_of(b)) is not None and data.ribs == "one way" and data.floats
+    ]
+    if not names:
+        return ""
+    return f'; one rib of {listed(names)} would hold it one way: write holds = "+y" or "-y" there'
 
 
 def catalogued_bearings(scene: Scene, choice: Choice = AS_STATED) -> dict[str, Catalogued]:
@@ -200,7 +215,7 @@ def partners(scene: Scene) -> dict[str, str]:
     rows = [
         (b, b.catalogue)
         for b in scene.bearings
-        if b.catalogue is not None and b.catalogue.one_sided
+        if b.catalogue is not None and b.catalogue.faces_one_way
     ]
     pressed = [(b, data.holds) for b, data in rows if data.preload is not None]
     free = [

@@ -18,6 +18,8 @@ NOTHING = 5e-5
 #: numbers that are told unless others are asked for
 SHOWN = (*JUDGED, K_ZZ)
 ALL = "in all"
+#: share of what is open in a number that one bearing leads, and the least range worth a sentence
+LEADS, WORTH = 0.8, 0.01
 #: share of itself by which a sampled deviation must differ before inputs are said to act on one
 #: another, where that many samples can tell
 RESOLVED = 0.05
@@ -65,8 +67,38 @@ def columns(numbers: OpenNumbers, name: Callable[[Any], str]) -> list[Column]:
     ]
 
 
-def remark(numbers: OpenNumbers) -> str:
-    """Return the sentence on where ranges come from; empty where nothing is open."""
+def leading(numbers: OpenNumbers, names: Iterable[str] = ()) -> str:
+    """Return the sentence on the one bearing whose inside leaves most of what is open in the widest of
+    the numbers that are shown; empty where there is none.
+    """
+    chosen = (numbers.of(name) for name in (tuple(names) or SHOWN))
+    wide = [(_wide(number), number) for number in chosen if number is not None]
+    width, number = max(wide, key=lambda pair: pair[0], default=(0.0, None))
+    if number is None or width < WORTH:
+        return ""
+    path, share = next(iter(number.width_shares.items()), ("", 0.0))
+    of = next((entry.of for entry in numbers.inputs if entry.path == path), "")
+    return led_by(of, share, number.quantity) if of and share >= LEADS else ""
+
+
+def _wide(number: OpenRecord) -> float:
+    """Return the width of the range of a number by all that is open."""
+    return (number.total.high or 0.0) - (number.total.low or 0.0)
+
+
+def led_by(bearing: str, share: float, number: str) -> str:
+    """Return the sentence on a bearing that leaves a share of what is open in a number."""
+    whole = min(99, round(100 * share)) if share < 1 else 100
+    return (
+        f"{whole} % of what is open in {number} comes from the inside of {bearing}: its maker knows "
+        "it, and solidgear budget lists what to ask."
+    )
+
+
+def remark(numbers: OpenNumbers, names: Iterable[str] = ()) -> str:
+    """Return the sentences on where ranges come from, and on a bearing that leads in the numbers of
+    some names, by default those that are judged; empty where nothing is open.
+    """
     if numbers.left_out:
         return f"The range by open data is not known: {numbers.left_out}."
     if not numbers.inputs:
@@ -75,7 +107,9 @@ def remark(numbers: OpenNumbers) -> str:
     refused = [f" Not included: {reason}." for reason in numbers.refused]
     paths = ", ".join(entry.path for entry in numbers.inputs)
     sources = ", ".join(dict.fromkeys(entry.source for entry in numbers.inputs))
-    return f"Ranges of {sources}: from {paths}. See: solidgear budget.{''.join(lost + refused)}"
+    led = leading(numbers, names)
+    more = f" {led}" if led else " See: solidgear budget."
+    return f"Ranges of {sources}: from {paths}.{more}{''.join(lost + refused)}"
 
 
 def table(numbers: OpenNumbers, bars: Mapping[Quantity, float], units: Units) -> Table:

@@ -66,11 +66,14 @@ class Part(BaseModel):
 
 
 class InputRecord(Part):
-    """An open input: path in the file, source, range in words."""
+    """An open input: path in the file, source, range in words; of an estimated inside the bearing in
+    words, whose maker knows it.
+    """
 
     path: str = ""
     source: str = ""
     said: str = ""
+    of: str = ""
 
 
 class IntervalRecord(Part):
@@ -110,6 +113,19 @@ class OpenRecord(Part):
     def shares(self) -> dict[str, float]:
         """Share of every input in the sum of variances, the largest first; empty without any."""
         parts = {path: (interval.deviation or 0.0) ** 2 for path, interval in self.by_input.items()}
+        total = sum(parts.values())
+        ordered = sorted(parts, key=lambda path: -parts[path])
+        return {path: parts[path] / total for path in ordered} if total else {}
+
+    @property
+    def width_shares(self) -> dict[str, float]:
+        """Share of every input in the sum of squared widths of the ranges by each, the largest first,
+        which need no deviations; empty without any.
+        """
+        parts = {
+            path: ((interval.high or 0.0) - (interval.low or 0.0)) ** 2
+            for path, interval in self.by_input.items()
+        }
         total = sum(parts.values())
         ordered = sorted(parts, key=lambda path: -parts[path])
         return {path: parts[path] / total for path in ordered} if total else {}

@@ -35,7 +35,7 @@ from solidgear.core.scene.point_mass import PointMass
 from solidgear.core.scene.shaft_load import AlongAxis, ShaftLoad
 from solidgear.core.scene.shapes import SHAPES, Cylinder, Shape, lay_out
 from solidgear.core.scene.stations import Attachment, Bearing, Port
-from solidgear.core.scene.tables import pairing, parts
+from solidgear.core.scene.tables import pairing, parts, with_list
 from solidgear.core.scene.toml_file import (
     FileOrder,
     describes_train,
@@ -107,6 +107,8 @@ class SceneFile(Model):
     attachment: Attachment = "average"
     #: material of segments without one: a name, or E, nu and density
     material: Annotated[Material, BeforeValidator(by_name), Written(Material | MaterialName)]
+    #: file of a list of bearings (CSV) that designations are looked up in first
+    bearings: str | None = None
     #: mounting of two single bearings with a contact angle: "O" or "X", or with their names, {O =
     #: ["A", "B"]}
     arrangement: Arrangement = ()
@@ -190,8 +192,11 @@ def scene_of(raw: Table, file_path: str, part_of: Reader = PARTS.refuse_parts) -
             "response or receptance on it, or read it with solidgear.load_train"
         ).located(raw, where=place_of(file_path))
     try:
-        return _Reading(dict(raw), file_path, part_of).scene()
+        raw = with_list(raw, Path(file_path).parent)
+        return _Reading(raw, file_path, part_of).scene()
     except SceneError as error:
+        if error.where:  # of a list of bearings
+            raise
         # both ends of a cylinder are one diameter
         problems = {(p.path, p.reason): p for p in with_table_paths(error, raw).problems}
         order = FileOrder(raw)

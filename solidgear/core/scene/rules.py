@@ -182,7 +182,7 @@ def problems_between(
 def preload_problems(bearings: Sequence[Bearing]) -> Iterator[SceneError]:
     """Yield a problem of preloaded rows that all hold the shaft the same way."""
     rows = [(k, b, b.catalogue) for k, b in enumerate(bearings) if b.catalogue is not None]
-    rows = [row for row in rows if row[2].one_sided]
+    rows = [row for row in rows if row[2].faces_one_way]
     pressed = [b for _, b, data in rows if data.preload is not None]
     ways = {data.holds for *_, data in rows}
     if len(pressed) == len(rows) == 2 and len(ways) == 2:

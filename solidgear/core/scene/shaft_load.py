@@ -73,7 +73,7 @@ TOWARDS = (
 )
 AxisWord = Literal["+x", "-x", "+z", "-z"]
 Sense = Literal["driving", "driven"]
-Hand = Literal["right", "left"]
+Hand = Literal["left", "right"]
 AlongAxis = Literal["+y", "-y"]
 
 

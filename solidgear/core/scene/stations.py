@@ -550,9 +550,13 @@ def _support_problems(bearing: Bearing) -> Iterator[SceneError]:
     kind = "" if data is None else data.kind.replace("_", " ")
     if bearing.support == "locating":
         if data is not None and data.floats:
+            remedy = "leave support out, or take one with ribs, such as NUP"
+            if data.ribs == "one way":
+                remedy = 'write holds = "+y" or "-y", the way in which its rib holds the shaft'
             yield SceneError(
-                f"a {kind} bearing carries nothing along y, ribs being left out: leave support out, "
-                'or write "floating"',
+                f"a {kind} bearing without ribs carries nothing along y: {remedy}"
+                if data.ribs == "none"
+                else f"a {kind} bearing with one rib holds one way: {remedy}",
                 path=("support",),
             )
         elif data is None and bearing.matrix is not None and not bearing.matrix[1][1]:

@@ -44,6 +44,12 @@ class BearingData(Protocol):
     def one_sided(self) -> bool: ...
 
     @property
+    def faces_one_way(self) -> bool: ...
+
+    @property
+    def ribs(self) -> str: ...
+
+    @property
     def both_ways(self) -> bool: ...
 
     def with_changes(self, **changes: Any) -> Any: ...
@@ -96,6 +102,14 @@ class PartReader:
 def pairing() -> Pairing:
     """Return the reader of pairs of bearings."""
     return (addition("table", "arrangement") or Pairing)()
+
+
+def with_list(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
+    """Return the tables of a scene with bearings of the list that it names."""
+    complete = addition("table", "list of bearings")
+    if complete is None:
+        return dict(tables) if tables.get("bearings") is None else _refuse(tables)
+    return complete(tables, folder)
 
 
 def paired(bearings: Sequence[Any], arrangement: Any) -> tuple[tuple[Any, ...], Sequence[Any]]:

@@ -148,8 +148,8 @@ def _bearing(scene: Scene, bearing: Bearing) -> Table:
     if bearing.hold is not None:
         table["hold"] = bearing.hold
     elif data is not None:
-        # a designation may stand for a class of clearance
-        table["catalogue"] = table_of(data, write=("clearance",))
+        # a designation may stand for a class of clearance, ribs or two rows
+        table["catalogue"] = table_of(data, write=data.written_too)
         table["status"] = bearing.status
     else:
         table["stiffness"] = stiffness_entries(bearing.matrix)

@@ -52,9 +52,9 @@ class Stretch(Detail):
                 f'begins where "{segment.name}" ends, at {segment.y1:.6g} m', path=("y",)
             )
             return
-        yield from self._kept(segment)
+        yield from self._fitted(segment)
 
-    def _kept(self, segment: Segment) -> Iterator[SceneError]:
+    def _fitted(self, segment: Segment) -> Iterator[SceneError]:
         """Yield problems of its sizes on a segment that it lies on."""
         raise NotImplementedError
 
@@ -70,9 +70,9 @@ def floor_problems(
             path=("depth",),
         )
     elif diameter is not None and not 2 * inner < diameter < 2 * outer:
-        wall = f"the bore, {2 * inner:.6g} m, and " if inner else ""
+        above = f"above the bore, {2 * inner:.6g} m, and " if inner else ""
         yield SceneError(
-            f'the floor of a {what} lies between {wall}the diameter of "{segment.name}", '
+            f'the floor of a {what} lies {above}below the surface of "{segment.name}", of diameter '
             f"{2 * outer:.6g} m",
             path=("diameter",),
         )

@@ -40,8 +40,8 @@ class RingGroove(Groove):
     Examples
     --------
     >>> groove = RingGroove(name="ring", segment="rod", y="0.1 m", width="1.85 mm", depth="1.25 mm")
-    >>> groove.reach(0.02)
-    (0.1, 0.10185)
+    >>> [round(y, 5) for y in groove.reach(0.02)]
+    [0.1, 0.10185]
     """
 
     kind: Literal["ring_groove"] = "ring_groove"

@@ -6,7 +6,7 @@ Lame's thick rings: an interference I on the diameter d presses with
                                      K_shaft = ((1 + q^2)/(1 - q^2) - nu)/E
 
 Q = d/d_hub and q = bore/d. A ring of the yield point R stays elastic to p = R (1 - Q^2)/sqrt(3), and a
-solid shaft to 2 R/sqrt(3) (DIN 7190-1:2017, 5.3).
+solid shaft to 2 R/sqrt(3) (DIN 7190-1:2017).
 """
 
 from __future__ import annotations
@@ -32,7 +32,7 @@ class PressFit(Stretch):
     >>> fit = PressFit(name="hub", segment="seat", y=0.0, hub_diameter="80 mm", interference="40 um")
     >>> seat = Segment(name="seat", y1=0.05, outer0=0.02, outer1=0.02)
     >>> f"{fit.pressure(seat) / 1e6:.1f} MPa"
-    '78.3 MPa'
+    '78.5 MPa'
     """
 
     needs: ClassVar = (("interference", "fit"),)
@@ -81,7 +81,7 @@ class PressFit(Stretch):
         hollow = 1 - (segment.inner0 / segment.outer0) ** 2
         return strength.yield_point * hollow / math.sqrt(3)
 
-    def _kept(self, segment: Segment) -> Iterator[SceneError]:
+    def _fitted(self, segment: Segment) -> Iterator[SceneError]:
         diameter = 2 * segment.outer0
         if self.hub_diameter <= diameter:
             yield SceneError(

@@ -100,7 +100,7 @@ class Thread(Stretch):
         """Radius of the root, m."""
         return ROOT * self.pitch
 
-    def _kept(self, segment: Segment) -> Iterator[SceneError]:
+    def _fitted(self, segment: Segment) -> Iterator[SceneError]:
         diameter = 2 * segment.outer0
         if not (1 - TURNED) * self.nominal <= diameter <= (1 + 1e-6) * self.nominal:
             yield SceneError(

@@ -7,7 +7,9 @@ from typing import Any
 
 import numpy as np
 
+from solidgear.bearings.catalogue import CLASSES
 from solidgear.bearings.designation import Boundary, boundary
+from solidgear.bearings.kinds import SHARES
 from solidgear.core import SceneError
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.core.scene.support import RIGID
@@ -31,7 +33,7 @@ KINDS = {
 }
 #: kinds that hold the shaft one way, and those that carry nothing along it
 ONE_WAY, FLOATING = ("angular_contact", "tapered", "thrust_ball"), ("cylindrical", "needle")
-BALLS = ("deep_groove", "angular_contact", "thrust_ball")
+BALLS = tuple(kind for kind, shares in SHARES.items() if shares.elements == "balls")
 BOTH_WAYS = "held both ways along the shaft, where the file says one way"
 #: relative difference of sizes that are the same
 SAME = 1e-3
@@ -114,9 +116,12 @@ def standard_of(bearing: Component) -> tuple[Boundary | None, str]:
         if not designation:
             continue
         try:
-            return boundary(designation), designation
+            standard = boundary(designation)
         except SceneError:
             continue
+        # of a tapered bore no file says what clearance is left
+        if not standard.tapered_bore:
+            return standard, designation
     return None, text
 
 
@@ -221,14 +226,24 @@ def _catalogue(
     table |= _inside(document, bearing, kind, notes)
     if kind in ONE_WAY:
         table |= _one_way(bearing, shaft, y, notes)
+    elif kind == "cylindrical":
+        table |= _ribs(bearing, shaft, y, notes)
     elif kind in FLOATING and absorbed(bearing, notes) not in ("", "no_direction"):
-        notes.assume(
-            bearing,
-            "carries nothing along the shaft, where the file says it does: ribs are not modelled",
-        )
+        notes.assume(bearing, "carries nothing along the shaft, where the file says it does")
     elif absorbed(bearing, notes) in ("positive", "negative"):
         notes.assume(bearing, BOTH_WAYS)
     return table
+
+
+def _ribs(bearing: Component, shaft: Shaft, y: float, notes: Notes) -> dict[str, Any]:
+    """Return how ribs of cylindrical rollers hold the shaft, where the file says so."""
+    word = absorbed(bearing, notes)
+    ways = {"positive": "one way", "negative": "one way", "both_directions": "both ways"}
+    if not word:
+        return {}
+    ribs = Sourced(ways.get(word, "none"), f"{bearing.label}: axial_force_absorption")
+    holds = _one_way(bearing, shaft, y, notes) if word in ("positive", "negative") else {}
+    return {"ribs": ribs, **holds}
 
 
 def _fits(standard: Boundary, sizes: list[float | None]) -> bool:
@@ -245,7 +260,7 @@ def _clearance(bearing: Component, kind: str, notes: Notes, is_ours: bool) -> di
         if clearance or (is_ours and clearance is not None):
             return {"clearance": Sourced(said(clearance, "um", 1e-6), f"{bearing.label}: {name}")}
     word = bearing.text("radial_clearance_class").replace("C0", "CN")
-    if word in ("C2", "CN", "C3", "C4"):
+    if word in CLASSES:
         return {"clearance": Sourced(word, f"{bearing.label}: radial_clearance_class")}
     if word:
         notes.drop(bearing, f"clearance class {word}, which has no table here: no clearance")
@@ -278,7 +293,7 @@ def _inside(document: Document, bearing: Component, kind: str, notes: Notes) -> 
             mm(length), f"{elements[0].label}: length_of_rolling_element"
         )
     angle = row.number("pressure_angle")
-    if angle and kind in ("angular_contact", "tapered", "spherical"):
+    if angle and SHARES[kind].angled:
         out["contact_angle"] = Sourced(deg(abs(angle)), f"{row.label}: pressure_angle")
     grooves = [row.number(f"raceway_radius_of_{ring}_ring") for ring in ("inner", "outer")]
     if kind in BALLS and diameter and all(grooves):

@@ -12,9 +12,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
+from solidgear.bearings.solved import Choice
 from solidgear.core import DOF_NAMES, WITHIN, Sheeted, SolidgearError, gap_verdict, listed, pinned
 from solidgear.core.plain import plain
 from solidgear.strength.deflection.face_load import FaceLoad, face_loads
+from solidgear.strength.deflection.leading import leading_bearing
 from solidgear.strength.deflection.misalignment import Measure, misalignment
 from solidgear.strength.deflection.shaft import ShaftDeflection, shaft_deflection
 from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
@@ -83,6 +85,8 @@ class Deflection:
     mounts: dict[str, tuple[Measured, ...]] = field(default_factory=dict)
     turns: tuple[StageTurn, ...] = ()  #: of planetary stages
     face_loads: tuple[FaceLoad, ...] = ()  #: by the norm, of meshes whose teeth are known
+    #: sentence on the one bearing whose inside leaves most of what is open; empty where there is none
+    led: str = ""
     statics: Statics | None = None  #: of a shaft alone
     lumped: tuple[str, ...] = ()  #: names of the lumped points of a shaft alone
 
@@ -409,25 +413,29 @@ def with_ranges(assembly: Assembly, solution: Deflection) -> Deflection:
     """Return the same with the ranges of the numbers that are compared over estimated insides and
     clearance classes.
     """
-    values = [[m.value for m in solution.compared]]
+    middle = np.array([m.value for m in solution.compared])
     _, choices = left_open(shaft.scene for shaft in assembly.train.shafts.values())
-    for choice in choices:
+    if not choices:
+        return solution
+
+    def values_at(choice: Choice) -> np.ndarray:
         operating = Operating(assembly, *solution.models.values(), choice=choice)
         state = operating.at(solution.point)
         if solution.load is None:
             measures = misalignment(assembly.on_flank(solution.point.coast), state.system)
-            values.append([float(m.row @ state.coordinates) for m in measures])
-        else:
-            values.append(state.motion(f"{ALONE}.{solution.load.port}").tolist())
-    if len(values) == 1:
-        return solution
-    low, high = np.min(values, axis=0), np.max(values, axis=0)
+            return np.array([float(m.row @ state.coordinates) for m in measures])
+        return np.array(state.motion(f"{ALONE}.{solution.load.port}"))
+
+    values = np.array([middle, *map(values_at, choices)])
+    low, high = values.min(axis=0), values.max(axis=0)
     measured = tuple(
         replace(m, open=(float(a), float(b))) for m, a, b in zip(solution.compared, low, high)
     )
+    led = leading_bearing(assembly.train, measured, values_at)
     if solution.load is None:
-        return replace(solution, misalignment=measured)
-    return replace(solution, displacement=solution.displacement | {solution.load.port: measured})
+        return replace(solution, misalignment=measured, led=led)
+    displacement = solution.displacement | {solution.load.port: measured}
+    return replace(solution, displacement=displacement, led=led)
 
 
 def _against_judge(solution: Deflection, judge: Deflection, tolerance: float) -> Standing:

@@ -147,8 +147,9 @@ def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
         "by local problems; models differ by what their theory leaves out."
     )
     if has_ranges:
-        note += " Range: by estimated insides and classes of clearance of the bearings."
-    return Table("Misalignment", columns, rows, note)
+        note += " Range: by estimated insides and classes of clearance of the bearings. "
+        note += deflected.judge.led
+    return Table("Misalignment", columns, rows, note.strip())
 
 
 def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
@@ -367,8 +368,11 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
         columns += _beside(end)
         rows.append(Aside([end, *six, *[None] * 6 * (1 + len(ends))]))
     if ends:
-        note += " Least and largest: by estimated insides and classes of clearance of the bearings."
-    return [Table(f"Motion of {port}", columns, rows, note)]
+        note += (
+            " Least and largest: by estimated insides and classes of clearance of the bearings. "
+        )
+        note += deflected.judge.led
+    return [Table(f"Motion of {port}", columns, rows, note.strip())]
 
 
 def _with_bars(row: list[Any], bars: Sequence[Sequence[Cell]]) -> list[list[Any]]:

@@ -26,7 +26,13 @@ from solidgear.strength.stress.duty import DutyForces, cycles_of
 from solidgear.strength.stress.norm.steels import strength_of
 from solidgear.strength.stress.notch import ENOUGH
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
-from solidgear.strength.stress.shaft import ShaftStress, check_tolerance, local_stress, shaft_stress
+from solidgear.strength.stress.shaft import (
+    ShaftStress,
+    check_tolerance,
+    least_safety,
+    local_stress,
+    shaft_stress,
+)
 from solidgear.strength.stress.solid_notches import FINEST_LOCAL, SolidNotch, solid_notches
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
@@ -66,6 +72,8 @@ class StressedShaft:
     #: none are open
     open_moment: tuple[float, float] | None
     open: Mapping[str, tuple[float, float]]  #: the same of the amplitude on each fillet, Pa
+    #: the same of the least safety of all notches; None of a duty table, or without ratings
+    open_safety: tuple[float, float] | None = None
     solids: tuple[SolidNotch, ...] = ()  #: grooves, and keyways and cross holes where asked for
     #: sentences on features that no solid gives stress to
     without_solid: tuple[str, ...] = ()
@@ -300,9 +308,21 @@ def _shafts(
         further = [forces_of(scene, loads[side].loads, loads[side].gravity) for loads in variants]
         name = scene.name if train.is_one_shaft else side
         solids = solid_notches(scene, stress, asked.tolerance, asked.local, progress)
+        safety = None if asked.duty else _open_safety(scene, stress, further, asked.conditions)
         ranges = _ranges(stress, further)
-        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, *solids))
+        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, safety, *solids))
     return tuple(shafts), open_by
+
+
+def _open_safety(
+    scene: Scene, stress: ShaftStress, variants: Sequence[SectionForces], conditions: Conditions
+) -> tuple[float, float] | None:
+    """Return the range of the least safety over the section forces solved and the variants."""
+    usual = [notch.rating.worst for notch in stress.worst if notch.rating is not None]
+    if not variants or not usual:
+        return None
+    others = [least_safety(scene, stress, forces, conditions) for forces in variants]
+    return min(*others, *usual[:1]), max(*others, *usual[:1])
 
 
 def _ranges(

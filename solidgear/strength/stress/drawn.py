@@ -67,14 +67,14 @@ def drawn_stresses(
     """Return the stress of the features of a shaft that the norm rates, over a duty table where there
     is one, and the others.
     """
-    stresses, others = [], []
+    stresses, unrated = [], []
     for feature in scene.features:
-        found = drawn_notch(scene, feature)
-        if isinstance(found, str):
-            others.append(Unrated(feature.name, feature.what, found))
+        drawn = drawn_notch(scene, feature)
+        if isinstance(drawn, str):
+            unrated.append(Unrated(feature.name, feature.what, drawn))
         else:
-            stresses.append(_worst(scene, feature, found, forces, conditions, duty))
-    return tuple(stresses), tuple(others)
+            stresses.append(_worst(scene, feature, drawn, forces, conditions, duty))
+    return tuple(stresses), tuple(unrated)
 
 
 def _worst(

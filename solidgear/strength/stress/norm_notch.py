@@ -124,7 +124,7 @@ class NotchByForm(NormNotch):
 @dataclass(frozen=True)
 class TwoNotches:
     """Two notches at one place: the excess of both factors over one adds (FKM guideline, 6th ed.
-    2012, 4.3.1, of notches that meet).
+    2012, of notches that meet).
     """
 
     first: RatedNotch
@@ -155,6 +155,6 @@ class TwoNotches:
         """Return the notch factors in a steel."""
         first, second = self.first.factors(steel), self.second.factors(steel)
         beta = {load: first.notch[load] + second.notch[load] - 1 for load in LOADS}
-        source = "assumed: FKM guideline, 4.3.1, of two notches that meet: beta_1 + beta_2 - 1"
+        source = "assumed: FKM guideline, of two notches that meet: beta_1 + beta_2 - 1"
         lines = (*first.lines, *second.lines, Line("beta", beta, source))
         return NotchFactors(beta, rise=beta, peak=None, lines=lines)

@@ -19,8 +19,8 @@ from solidgear.strength.stress.shaft import Notch, ShaftStress
 STRESS = "Pa stressed"
 #: safety that DIN 743 asks for where loads and strength are sure
 LEAST = 1.2
-#: most reasons that a headline names
-NAMED = 2
+#: share of a value that is left open from which on it is told
+LITTLE = 1e-3
 
 
 def drawn_notches(stress: ShaftStress, units: Units = ENGINEERING) -> Table:
@@ -160,6 +160,9 @@ def headline(stressed: StressAtRest, units: Units = ENGINEERING) -> str:
     sentence = f"{lead} at {place}: {_stress_words(notch, units)}"
     if notch.rating is not None:
         sentence += f", {_safety_words(notch.rating)}"
+    if shaft.open_safety is not None and shaft.open_safety[1] > (1 + LITTLE) * shaft.open_safety[0]:
+        low, high = map(safety, shaft.open_safety)
+        sentence += f"; the least safety is {low} to {high} by {stressed.open_by} of the bearings"
     return " ".join([f"{sentence}.", *_unrated_words(stressed.shafts)])
 
 

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from solidgear.core.scene import Segment
 
 #: a notch with the remarks on it, or the reason why it has no rating
-Found: TypeAlias = "DrawnNotch | str"
+NotchOrReason: TypeAlias = "DrawnNotch | str"
 
 
 @dataclass(frozen=True)
@@ -72,7 +72,7 @@ class Place:
         return [o for o in others if o.span[0] < hi - TOUCH and o.span[1] > lo + TOUCH]
 
 
-def drawn_notch(scene: Scene, feature: Any) -> Found:
+def drawn_notch(scene: Scene, feature: Any) -> NotchOrReason:
     """Return a feature of a scene as a notch of the norm, or why it is none.
 
     Examples
@@ -89,7 +89,7 @@ def drawn_notch(scene: Scene, feature: Any) -> Found:
     return notch_of(Place(feature, segment, scene))
 
 
-def _keyway(place: Place) -> Found:
+def _keyway(place: Place) -> NotchOrReason:
     others = place.beside("keyway")
     count = 1 + len(others)
     words = "one keyway" if count == 1 else "two keyways, 1.15 times one"
@@ -130,7 +130,7 @@ def _hub(place: Place) -> NotchByTests:
     )
 
 
-def _press_fit(place: Place) -> Found:
+def _press_fit(place: Place) -> NotchOrReason:
     fit, segment = place.feature, place.segment
     pressure = f"it presses with {fit.pressure(segment) / 1e6:.4g} MPa (Lame, both elastic)"
     limit = fit.hub_limit(segment)
@@ -141,7 +141,7 @@ def _press_fit(place: Place) -> Found:
     return DrawnNotch(_hub(place), (pressure,))
 
 
-def _spline(place: Place) -> Found:
+def _spline(place: Place) -> NotchOrReason:
     teeth = place.feature
     root = Section(2 * teeth.root * place.segment.outer0, 2 * place.segment.inner0)
     notch = NotchByTests(
@@ -155,7 +155,7 @@ def _spline(place: Place) -> Found:
     return DrawnNotch(notch)
 
 
-def _ring_groove(place: Place) -> Found:
+def _ring_groove(place: Place) -> NotchOrReason:
     groove = place.feature
     depth, radius = groove.depth_in(place.segment.outer0), groove.radius or 0.0
 
@@ -174,7 +174,7 @@ def _ring_groove(place: Place) -> Found:
     return DrawnNotch(notch, sharp)
 
 
-def _v_groove(place: Place) -> Found:
+def _v_groove(place: Place) -> NotchOrReason:
     groove, radius = place.feature, place.segment.outer0
     depth = groove.depth_in(radius)
     floor = place.floor(depth)
@@ -199,13 +199,15 @@ def _v_groove(place: Place) -> Found:
     return DrawnNotch(notch, tuple(remarks))
 
 
-def _round_groove(place: Place) -> Found:
+def _round_groove(place: Place) -> NotchOrReason:
     groove = place.feature
     depth = groove.depth_in(place.segment.outer0)
     return _rounded(place.floor(depth), depth, groove.radius, "round groove")
 
 
-def _rounded(floor: Section, depth: float, radius: float, what: str, *remarks: str) -> Found:
+def _rounded(
+    floor: Section, depth: float, radius: float, what: str, *remarks: str
+) -> NotchOrReason:
     small = floor.outer
     form = {load: forms.round_groove(load, small, depth, radius) for load in LOADS}
     reason = forms.out_of_range(small, small + 2 * depth, radius, form)
@@ -216,7 +218,7 @@ def _rounded(floor: Section, depth: float, radius: float, what: str, *remarks: s
     return DrawnNotch(NotchByForm(floor, source, form, gradient, revolved=True), remarks)
 
 
-def _thread(place: Place) -> Found:
+def _thread(place: Place) -> NotchOrReason:
     thread = place.feature
     core = Section(thread.core, 2 * place.segment.inner0)
     depth = (thread.nominal - thread.core) / 2
@@ -229,12 +231,14 @@ def _thread(place: Place) -> Found:
     )
 
 
-def _relief(place: Place) -> Found:
+def _relief(place: Place) -> NotchOrReason:
     relief, segment = place.feature, place.segment
     floor = place.floor(relief.depth)
     shoulder = 2 * relief.shoulder(place.scene.segments)
-    sizes = shoulder, 2 * segment.outer0, floor.outer, relief.radius
-    form = {load: forms.undercut(load, *sizes) for load in LOADS}
+    between = 2 * segment.outer0
+    form = {
+        load: forms.undercut(load, shoulder, between, floor.outer, relief.radius) for load in LOADS
+    }
     groove = {
         load: forms.round_groove(load, floor.outer, relief.depth, relief.radius) for load in LOADS
     }
@@ -248,7 +252,7 @@ def _relief(place: Place) -> Found:
     return DrawnNotch(NotchByForm(floor, source, form, gradient, revolved=True))
 
 
-def _cross_hole(place: Place) -> Found:
+def _cross_hole(place: Place) -> NotchOrReason:
     hole, segment = place.feature, place.segment
     if hole.inclination or hole.offset:
         return "the norm has holes through the axis at right angles to it, and this one leans or passes it"
@@ -261,7 +265,7 @@ def _cross_hole(place: Place) -> Found:
 
 
 #: by kind
-NOTCHES: Mapping[str, Callable[[Place], Found]] = {
+NOTCHES: Mapping[str, Callable[[Place], NotchOrReason]] = {
     "keyway": _keyway,
     "press_fit": _press_fit,
     "spline": _spline,

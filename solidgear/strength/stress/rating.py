@@ -330,7 +330,7 @@ def _used(
         repeated = borne * elementary_repetitions(of_levels, counts, exponent)
         elementary[load] = repeated ** (-1 / exponent)
     if several:
-        given = "given" if damage_sum is not None else f"{ASSUMED}: FKM guideline, 4.4.3, of steel"
+        given = "given" if damage_sum is not None else f"{ASSUMED}: FKM guideline, of steel"
         sheet.write("D_M", borne, given)
     most = "DIN 743-4: knee 1e6 cycles, slopes 5, 5, 8"
     rule = f"{most}; consequent Miner" if several else most

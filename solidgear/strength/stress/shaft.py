@@ -7,7 +7,7 @@ refined (Williams 1952), so they are listed and get no number.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -38,6 +38,8 @@ if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from solidgear.core import Scene
+    from solidgear.core.scene import Segment
+    from solidgear.strength.stress.conditions import LoadLevel
 
 #: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress, or is at it
 NEAR, TOUCHING = 1.0, 0.01
@@ -245,15 +247,8 @@ def _notch(
             for source, factor in PUBLISHED.items()
         }
         if strength is not None:
-            rating = rated(
-                FilletNotch(fillet, large),
-                levels(conditions, duty, nominal, partial(_nominal_at, fillet)),
-                strength,
-                conditions,
-                largest=2 * scene.outline.largest_radius,
-                source=source_of(segment),
-                raised=FilletNotch(fillet, large, bars=1.0),
-            )
+            under = levels(conditions, duty, nominal, partial(_nominal_at, fillet))
+            rating = _rating(scene, segment, FilletNotch(fillet, large), under, conditions)
             steel = steel_at_size(strength, rating, conditions)
             fatigue = FilletNotch(fillet, large).by_load(steel)
     return Notch(
@@ -271,6 +266,42 @@ def _notch(
         rating=rating,
         remark=_remark(corner, seats, fillet, tolerance, _excess_by_shear(fillet, nominal, local)),
     )
+
+
+def _rating(
+    scene: Scene,
+    segment: Segment,
+    notch: FilletNotch,
+    under: Sequence[LoadLevel],
+    conditions: Conditions,
+) -> Rating:
+    """Rate a fillet on a segment whose strength is known under levels of nominal stress."""
+    strength = strength_of(segment)
+    assert strength is not None, "without strength there is no rating"
+    return rated(
+        notch,
+        under,
+        strength,
+        conditions,
+        largest=2 * scene.outline.largest_radius,
+        source=source_of(segment),
+        raised=replace(notch, bars=1.0),
+    )
+
+
+def least_safety(
+    scene: Scene, stress: ShaftStress, forces: SectionForces, conditions: Conditions
+) -> float:
+    """Return the least safety of all notches under other section forces; infinite without ratings."""
+    drawn, _ = drawn_stresses(scene, forces, conditions)
+    safeties = [notch.rating.worst for notch in drawn if notch.rating is not None]
+    for notch in stress.notches:
+        if notch.rating is not None:
+            segment = scene.segments[notch.found.corner.owner]
+            under = conditions.levels(_nominal_at(notch.found, forces))
+            fillet = FilletNotch(notch.found, notch.large)
+            safeties.append(_rating(scene, segment, fillet, under, conditions).worst)
+    return min(safeties, default=np.inf)
 
 
 def _nominal_at(fillet: FilletFactors, forces: SectionForces) -> NominalStress:

@@ -21,6 +21,7 @@ from solidgear.strength.load import LoadsAlone
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.strength.stress.din743 import LOADS, Load
 from solidgear.strength.stress.notch_tables import (
+    LITTLE,
     STRESS,
     drawn_notches,
     headline,
@@ -49,8 +50,6 @@ CHART_SHOWN = (
 )
 #: of the largest value of a table: what is less is rounding, or couplings of no weight
 NOTHING = 1e-9
-#: share of a value that is left open from which on it is told
-LITTLE = 1e-3
 #: what holds of all of it
 ELASTIC = "Linear elastic, without residual stress."
 #: px; height of a panel of the chart

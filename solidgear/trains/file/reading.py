@@ -8,13 +8,25 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 from typing import Annotated, Any, ClassVar
 
 from pydantic import model_validator
 
-from solidgear.core import Document, Model, Scene, SceneError, Written, addition, listed, near
+from solidgear.core import (
+    Document,
+    Model,
+    Scene,
+    SceneError,
+    Written,
+    addition,
+    document_of,
+    listed,
+    near,
+    show,
+)
 from solidgear.core.loading import as_written as scene_as_written
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS
 from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
@@ -55,6 +67,8 @@ class _Tables(Model):
     name: str = "train"
     #: where the numbers come from
     source: str = ""
+    #: file of a list of bearings (CSV) that designations of all shafts are looked up in first
+    bearings: str | None = None
     #: inertia and torsional spring of what brings torque; several by name
     engine: Annotated[dict[str, Rotor], Written(Rotor | dict[str, Rotor])] = {}
     #: inertia and torsional spring of what takes torque; several by name
@@ -151,7 +165,9 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
                 path=("segment",),
             )
         data: dict[str, Any] = {"name": name_of(file_path), **raw}
-        read_scene = partial(_with_scene, folder, "operation" not in raw, shaft)
+        read_scene = partial(
+            _with_scene, folder, "operation" not in raw, with_list_of(raw, folder, shaft)
+        )
         problems, kind = Problems(), LongFile if "shaft" in raw else ShortFile
         if kind is LongFile:
             data["shaft"] = _shafts(problems, raw["shaft"], read_scene, "planetary" in raw)
@@ -187,6 +203,25 @@ def train_of(raw: Mapping[str, Any], file_path: str, shaft: ReadShaft = _as_writ
         if error.where:
             raise
         raise as_written(error, raw).located(raw, where=file_path) from None
+
+
+def with_list_of(raw: Mapping[str, Any], folder: Path, shaft: ReadShaft) -> ReadShaft:
+    """Return a reader of shafts that have the list of bearings of their train, where they name none
+    themselves.
+    """
+    name = raw.get("bearings")
+    if name is None:
+        return shaft
+    if not isinstance(name, str):
+        reason = 'names the file of a list of bearings, such as "my_bearings.csv"'
+        raise SceneError(reason, path=("bearings",), value=show(name))
+    path = os.path.abspath(folder / name)
+
+    def read(side: str, source: Any, alone: bool) -> Scene:
+        document = document_of(source)
+        return shaft(side, replace(document, tables={"bearings": path, **document.tables}), alone)
+
+    return read
 
 
 def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:

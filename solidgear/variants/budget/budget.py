@@ -19,17 +19,18 @@ every range, 0 to 1.
 
 from __future__ import annotations
 
+import copy
 import itertools
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
-from typing import ClassVar
+from typing import Any, ClassVar
 
 import numpy as np
 import scipy.linalg as sla
 
 from solidgear.bearings.catalogue import catalogue_of
-from solidgear.bearings.clearance import clearance_range
+from solidgear.bearings.clearance import clearance_range, is_axial
 from solidgear.bearings.solved import Choice, solved, wants_equilibrium
 from solidgear.core import (
     LADDER,
@@ -57,6 +58,7 @@ from solidgear.core.loading import SHAFT
 from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.solve.statics import condense
+from solidgear.variants.budget.questions import Question, questions
 
 Progress = Callable[[str], None]
 Place = tuple[float, ...]
@@ -77,7 +79,7 @@ def beside(scene: Scene, body: Body | None = None) -> OpenNumbers:
 
 def opened(scene: Scene) -> OpenNumbers:
     """Return the whole budget for a report, left out as by :func:`beside`."""
-    return _if_few(scene, lambda: budget(scene))
+    return _if_few(scene, lambda: _studied(scene)[1])
 
 
 def _if_few(scene: Scene, solve: Callable[[], OpenNumbers]) -> OpenNumbers:
@@ -133,14 +135,27 @@ def budget(
     (-0.005, 0.005)
     """
     scene = load(scene)
+    if samples and not FEWEST_SAMPLES <= samples <= MOST_SAMPLES:
+        raise SolidgearError(f"samples = {samples}: give {FEWEST_SAMPLES} to {MOST_SAMPLES}, or 0")
+    study, ranges = _studied(scene, samples, seed, progress)
+    progress("what makers know")
+    insides = [k for k, open_input in enumerate(study.inputs) if open_input.of]
+    asked = questions(study.points, ranges, insides)
+    return Budget(scene=scene.name, questions=asked, **dict(ranges))
+
+
+def _studied(
+    scene: Scene, samples: int = 0, seed: int = 0, progress: Progress = lambda _: None
+) -> tuple[_Study, OpenNumbers]:
+    """Return the points of a scene that were solved, and the ranges of its numbers with deviations;
+    refuse a scene without open inputs.
+    """
     inputs = open_inputs(scene)
     if not inputs:
         raise SolidgearError(
             f"{scene.name}: no input is open, since no bearing has an estimated inside or a class "
             "of clearance and the file has no [uncertain]"
         )
-    if samples and not FEWEST_SAMPLES <= samples <= MOST_SAMPLES:
-        raise SolidgearError(f"samples = {samples}: give {FEWEST_SAMPLES} to {MOST_SAMPLES}, or 0")
     study = _Study(scene, inputs)
     for k, open_input in enumerate(inputs):
         progress(f"{open_input.path} ({k + 1} of {len(inputs)})")
@@ -156,8 +171,7 @@ def budget(
             if (numbers := study.at(tuple(place))) is not None:
                 sampled.append(numbers)
     progress("ends of all inputs together")
-    ranges = study.record(sampled, samples, seed if samples else None)
-    return Budget(scene=scene.name, **dict(ranges))
+    return study, study.record(sampled, samples, seed if samples else None)
 
 
 class Budget(Sheeted, OpenNumbers):
@@ -166,6 +180,7 @@ class Budget(Sheeted, OpenNumbers):
     sheeted: ClassVar[str] = "variants.budget.chart:budget_sheet"
 
     scene: str = ""  #: name of it
+    questions: list[Question] = []  #: to makers of bearings, those that narrow most first
 
 
 class _Study:
@@ -321,7 +336,7 @@ class _Study:
 
 
 def _recorded(inputs: Iterable[OpenInput]) -> list[InputRecord]:
-    return [InputRecord(path=i.path, source=i.source, said=i.said) for i in inputs]
+    return [InputRecord(path=i.path, source=i.source, said=i.said, of=i.of) for i in inputs]
 
 
 def spread_points(dimension: int, count: int) -> np.ndarray:
@@ -364,6 +379,7 @@ class OpenInput:
     low: float = 0.0
     high: float = 1.0
     usual: float = 0.5  #: place of the value of the scene in the range, 0 to 1
+    of: str = ""  #: bearing in words, of an estimated inside
 
     def value(self, place: float) -> float:
         """Return the factor, or the place, at a place of the range."""
@@ -393,10 +409,13 @@ def open_inputs(scene: Scene) -> tuple[OpenInput, ...]:
             continue
         path = f"bearing.{bearing.name}"
         if data.estimated:
-            inputs.append(OpenInput(path + INSIDE, BEARINGS, "estimated, softer to stiffer"))
+            designation = f" ({data.designation})" if data.designation else ""
+            words = f"bearing {bearing.name}{designation}"
+            said = "estimated, softer to stiffer"
+            inputs.append(OpenInput(path + INSIDE, BEARINGS, said, of=words))
         if isinstance(data.clearance, str):
             least, most = (f"{1e6 * end:.3g}" for end in clearance_range(data))
-            words = f"{data.clearance}, {least} to {most} um"
+            words = f"{data.clearance}, {least} to {most} um{' along y' * is_axial(data)}"
             inputs.append(OpenInput(path + CLEARANCE, BEARINGS, words))
     for stated in scene.uncertain:
         source = {"material": MATERIAL, "segment": MATERIAL, "load": LOAD}.get(
@@ -420,6 +439,18 @@ class Points:
         self.lost: dict[str, None] = {}  #: names of bearings that carried nothing at a point
         self._beams: dict[tuple, Body] = {}
         self._first: NamedShapes | None = None
+
+    def with_data(self, bearing: str, **known: Any) -> Points:
+        """Return the same points of a scene in which more catalogue data of a bearing are known."""
+        out = copy.copy(self)
+        bearings = tuple(
+            b.with_changes(catalogue=b.catalogue.with_changes(**known))
+            if b.name == bearing and b.catalogue is not None
+            else b
+            for b in self.scene.bearings
+        )
+        out.scene = self.scene.with_changes(bearings=bearings)
+        return out
 
     @property
     def model(self) -> str:

@@ -13,6 +13,7 @@ from solidgear.show.panel import GREY, Panel, Series, readout
 from solidgear.show.plot import NARROW, WIDE, Chart
 from solidgear.show.scales import Axis, in_percent
 from solidgear.show.sheet import Sheet, Terminal
+from solidgear.show.table import Cell, Column, Table, text
 from solidgear.show.units import ENGINEERING, Units
 
 if TYPE_CHECKING:
@@ -66,17 +67,53 @@ def budget_chart(
 
 
 def budget_sheet(ranges: Budget, units: Units = ENGINEERING, asked: Iterable[str] = ()) -> Sheet:
-    """Return the sheet of all ranges, or of numbers asked for."""
+    """Return the sheet of all ranges, or of numbers asked for, and of questions to makers."""
+    tables = [budget_table(ranges, asked)]
+    if ranges.questions:
+        tables.append(_questions(ranges))
     return Sheet(
         name="budget",
         title=f"{ranges.title or ranges.scene}: ranges by open inputs",
         lead="",
-        tables=[budget_table(ranges, asked)],
+        tables=tables,
         data=ranges.model_dump(mode="json"),
         charts={"budget": partial(budget_chart, ranges, asked=asked)},
         terminal=Terminal(heading=()),
         words={"budget": "Range of every number by every open input."},
     )
+
+
+def _questions(ranges: Budget) -> Table:
+    """Return what to ask makers, and what each answer leaves of a range."""
+    columns = [
+        *map(text, ("bearing", "its maker knows", "estimated here")),
+        Column("of", kind="word"),
+        Column("range now", name="width", unit="1"),
+        Column("left of it", name="left", unit="1"),
+        Column("in catalogues", kind="word"),
+    ]
+    rows, before = [], ""
+    for question in ranges.questions:
+        name = f"{question.bearing} ({question.designation or 'no designation'})"
+        left = f"{100 * question.left:.0f} %"
+        rows.append(
+            [
+                Cell(name, "", "" if name == before else name),
+                question.asked,
+                question.middle,
+                question.number,
+                Cell(question.width, "", f"{100 * question.width:.2g} %"),
+                Cell(question.left, "", left),
+                "yes" if question.in_catalogue else "",
+            ]
+        )
+        before = name
+    note = (
+        "Left: width of the range by this inside once that one number is known, at the middle of its "
+        "estimate. Send the list to the maker and write the answers into [bearing.catalogue], or into "
+        "a list of bearings."
+    )
+    return Table("Questions to makers", columns, rows, note, name="questions")
 
 
 def of_record(record: Record, width: float) -> Chart | None:

@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 
 from solidgear.core import (
+    Document,
     Scene,
     SolidgearError,
     Source,
@@ -443,7 +444,11 @@ class TrainVariants(FileVariants[Train]):
         return train
 
     def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Train:
-        def of_side(side: str, path: Path, alone: bool) -> Scene:
+        def of_side(side: str, source: Path | Document, alone: bool) -> Scene:
+            # with tables come the list of bearings of the train
+            given = source.tables if isinstance(source, Document) else {}
+            path = Path(source.path) if isinstance(source, Document) else source
+            of_train = {key: given[key] for key in ("bearings",) if key in given}
             key = (
                 side,
                 str(path),
@@ -455,7 +460,7 @@ class TrainVariants(FileVariants[Train]):
                     self._scenes.clear()
                 usual = path == self.path.parent / str(shafts_in(self.files[MAIN])[side]["scene"])
                 other = None if usual else document_of(path).tables
-                tables = self.put(side, varied, row, other)
+                tables = {**of_train, **self.put(side, varied, row, other)}
                 self._scenes[key] = scene_of(tables, path, alone)
             return self._scenes[key]
 

@@ -205,7 +205,9 @@ def _add_catalogue(parts: Parts, number: int, data: Mapping, table: Mapping, sce
 
 def _absorbs(data: Mapping, table: Mapping) -> str:
     """Return the direction along the shaft in which a rolling bearing takes force."""
-    if data["kind"] in ONE_WAY and data.get("holds"):
+    one_way = data["kind"] in ONE_WAY or data.get("ribs") == "one way"
+    if one_way and data.get("holds"):
         return "positive" if data["holds"] == "+y" else "negative"
-    floats = table.get("support") == "floating" or data["kind"] in ("cylindrical", "needle")
-    return "no_direction" if floats else "both_directions"
+    ribbed = data.get("ribs") == "both ways"
+    floats = data["kind"] == "needle" or (data["kind"] == "cylindrical" and not ribbed)
+    return "no_direction" if floats or table.get("support") == "floating" else "both_directions"

@@ -3,14 +3,15 @@ r"""Finite life and spectra: the consequent form of Miner's rule, and its elemen
 A notch bears N_D = 1e6 cycles at its fatigue limit; above, N falls as the share of the limit to the
 power -q, 5 by normal stress and 8 by torsion (DIN 743-4). In the consequent form levels below the
 limit do no damage until the limit, lowered by damage D as (1 - D)^(1/(q - 1)), has come down to them
-(Haibach, Betriebsfestigkeit, 3rd ed. 2006, 3.2.4, after Gatts: the same decay whose approximation is
+(Haibach, Betriebsfestigkeit, 3rd ed. 2006, chapter 3, after Gatts: the decay whose approximation is
 the slope 2q - 1). With shares u_1 > u_2 > ... of the limit, all scaled by S, and n_i cycles,
 
     Z(S) = sum over m of  (U_m^(q-1) - U_(m+1)^(q-1)) / sum over i <= m of n_i (S u_i)^q / N_D
 
 repetitions of the spectrum are borne, U the scaled shares, at most 1. The safety is the S at which
 Z D_M is one. The sum of damage D_M that a spectrum bears is 0.3 for steel by the FKM guideline (6th
-ed. 2012, 4.4.3); one level alone bears 1.
+ed. 2012); one level alone bears 1. Knee and slopes of the norm could be held against no second
+source.
 """
 
 from __future__ import annotations
