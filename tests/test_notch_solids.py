@@ -212,7 +212,7 @@ def test_a_study_has_the_solids_that_are_asked_for(hole):
     assert notch.local.amplitude_bar == pytest.approx(bending.bar * notch.nominal.bending)
     assert notch.reached
     assert not replace(notch, enough=1e-3).reached
-    # the keyway ends at the hole's side of the bearing, 0.1 diameters and less away
+    # the keyway ends within the hole's width
     assert notch.remarks == ('not in its solid: "key" (0 diameters away)',)
     units = ENGINEERING
     for table in (solid_stress([notch], units), solid_factors([notch])):
