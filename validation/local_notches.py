@@ -14,7 +14,7 @@ torsion of holes and keyways the largest shear stress.  Sources:
   section left: DIN 743-2:2012, 5.2.3.
 - A hole that is small beside the shaft, over the section left: 3 in tension (Kirsch), exact without lateral contraction,
   which adds up to 5 % inside of a thick wall.
-- A keyway of d/4 by d/8 with r/d = 1/48 over the plain shaft: 2.14 in bending, 2.62 in torsion
+- A keyway of d/4 by d/8 at its sides with r/d = 1/48 over the plain shaft: 2.14 in bending, 2.62 in torsion
   (Fessler, Rogers and Stanley 1969, as Peterson's chart 5.1 has them, from memory).
 - A long keyway in torsion: Prandtl's stress function on the cross-section, by triangles, here.
 
@@ -178,15 +178,17 @@ def holes(tolerance: float) -> list[dict]:
     return rows
 
 
-def keyway(length: float = 1.2, depth: float = DIAMETER / 8) -> Keyway:
-    """Return a keyway of a length in diameters and a depth, m."""
+def keyway(length: float = 1.2) -> Keyway:
+    """Return a keyway of a length in diameters, a width of d/4 and a depth of d/8 at its sides."""
+    width, radius = DIAMETER / 4, DIAMETER / 2
+    crown = radius - math.sqrt(radius**2 - width**2 / 4)
     return Keyway(
         name="key",
         segment="shaft",
         y=0.5,
         length=length * DIAMETER,
-        width=DIAMETER / 4,
-        depth=depth,
+        width=width,
+        depth=DIAMETER / 8 + crown,
         radius=DIAMETER / 48,
     )
 
