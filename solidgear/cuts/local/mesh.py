@@ -31,6 +31,9 @@ if TYPE_CHECKING:
 BULK, AT_HOLE, AT_ROOT, AT_END = 0.5, 0.5, 1.5, 0.5
 #: growth of edges per distance from a hole or an end, from a root, and from a place of largest stress
 GROWTH, FROM_ROOT, NEAR_PEAK = 0.6, 1.0, 0.5
+#: gmsh's number of the mesher of volumes: at steep changes of size along a thin root the usual one
+#: has been seen to look for a boundary without end
+HXT = 10
 #: share of the volume that a mesh may be off by
 VOLUME = 1e-3
 
@@ -101,6 +104,7 @@ def local_mesh(shape: LocalShape, peaks: Sequence[Peak] = ()) -> SolidMesh:
         occ.synchronize()
         volume = occ.getMass(3, piece)
         set_size(gmsh, _sizes(shape, peaks), BULK * shape.outer)
+        gmsh.option.setNumber("Mesh.Algorithm3D", HXT)
         filling = filled(
             gmsh,
             f'gmsh could not mesh the shaft around "{shape.cut.name}" ({{}}): change its size a '
