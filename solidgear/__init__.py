@@ -18,7 +18,7 @@ What there is, each with an example in its help:
 
     scenes       load, Scene, Segment, Bearing, Port, PointMass, ShaftLoad, LoadCase, Housing,
                  Lubrication, Material, STEEL, Ask
-    questions    answer, compare, condense, modes, check, bearing, deflect, stress, turn
+    questions    answer, compare, condense, modes, check, bearing, deflect, stress, sheet, turn
     studies      sweep, sensitivities, optimise, budget
     measured     correlate, identify, overlay, load_measured, Measured, Responses, SurfacePoints
     bodies       build, solid_body, Body, Supports

@@ -101,6 +101,7 @@ from solidgear.core.system.gear_mesh import (
 from solidgear.core.system.gear_mesh import (
     to_gear_frame as to_gear_frame,
 )
+from solidgear.datasheet.study import sheet as sheet
 from solidgear.exchange.export import export as export
 from solidgear.exchange.matrices.formats import read_matrices as read_matrices
 from solidgear.exchange.matrices.source import port_matrices as port_matrices

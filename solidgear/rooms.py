@@ -112,6 +112,7 @@ ADDITIONS = {
         "judge-system": "trains.printed:COMPARISON",
         "nonlinear": "backlash.printed:NONLINEAR",
         "contact": "teeth.printed:CONTACT",
+        "sheet": "datasheet.printed:SHEET",
         "export": "exchange.printed:EXPORT",
     },
     # matrices of other programs

@@ -22,7 +22,7 @@ port = { name = "gear", at = "gear.middle", attach_to = "gear" }
 """
 SCENES = [
     ("cylinder_free", ("refinement=0.5",)),
-    pytest.param("cylinder_free", ("element=tet10", "refinement=0.8"), marks=pytest.mark.long),
+    pytest.param("cylinder_free", ("element=tet10", "refinement=0.5"), marks=pytest.mark.long),
 ]
 
 

@@ -147,7 +147,7 @@ def misses(entry, scene=None):
 
 
 #: two of three widths of seats, each of which takes bodies of its own
-LONG = {f"overhung pinion, rigid over averaged bearings, seats {mm} mm" for mm in (10, 20)}
+LONG = {f"overhung pinion, rigid over averaged bearings, seats {mm} mm" for mm in (10, 20, 40)}
 
 
 @pytest.mark.parametrize(

@@ -198,6 +198,7 @@ def test_straight_narrow_teeth_carry_as_their_virtual_spur_wheels_do():
     assert secants[0] == pytest.approx(secants[1], rel=5e-3)
 
 
+@pytest.mark.long
 def test_random_positions_settle():
     rng = np.random.default_rng(1)
     for _ in range(20):

@@ -108,6 +108,7 @@ def test_conjugate_teeth_of_table_1_and_mismatched_ones():
     assert secants[0.0] > 4 * secants[12e-3] > 1e9
 
 
+@pytest.mark.long
 def test_the_sheet_of_an_axle_has_its_band_and_pattern(axle):
     study = sg.contact(axle, model=TeethModel(slices=12, positions=4), factors=(0.5, 1.0))
     (mesh,) = study.meshes

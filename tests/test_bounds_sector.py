@@ -89,7 +89,7 @@ def small_residuals(monkeypatch):
 @pytest.mark.parametrize(
     ("name", "half"),
     [
-        ("straight", True),
+        pytest.param("straight", True, marks=pytest.mark.slow),
         pytest.param("straight", False, marks=pytest.mark.slow),
         ("spiral", False),
         ("rigid", True),

@@ -133,7 +133,7 @@ def _on_quadrilateral(m, cell, corners, coordinates):
         ("tet10", "average", STEEL),
         ("tet10", "average", RUBBER),
         ("tet10", "rigid", STEEL),
-        ("hex20", "average", STEEL),
+        pytest.param("hex20", "average", STEEL, marks=pytest.mark.slow),
         ("hex20", "rigid", STEEL),
     ],
     ids=["tet10", "tet10 of rubber", "tet10 on a rigid seat", "hex20", "hex20 on a rigid seat"],

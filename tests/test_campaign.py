@@ -344,6 +344,7 @@ def _run(folder, *arguments):
     return Run(command.parsed([*arguments]), folder, _directly, pytest.fail)
 
 
+@pytest.mark.long
 def test_a_coarse_answer_of_a_drawn_body():
     scene = answers.scene_of("free shaft")
     found = answers.ask(scene, 0.1)

@@ -60,6 +60,7 @@ def test_corner_cuts_keep_the_mesh_whole():
     assert outline == pytest.approx(2 * 0.14 + 0.01 + 0.02 + 0.01, rel=1e-12)
 
 
+@pytest.mark.long
 def test_layers_shrink_by_the_ratio_at_every_corner():
     scene = stepped()
     shortest = [
@@ -152,6 +153,7 @@ def test_torsion_of_a_bar_is_a_standing_wave():
     assert set(found) == {"torsion 1", "torsion 2"}
 
 
+@pytest.mark.long
 def test_a_shaft_stands_on_its_axial_springs():
     """Of two soft springs in parallel hardly anything but the springs is left, to their ratio to
     the shaft: rounding of the shaft's stiffness does not show.

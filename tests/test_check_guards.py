@@ -864,6 +864,7 @@ def test_narrow_seats_are_told_in_one_sentence():
     assert "the seats of 'A', 'B', 'C' are 0.025, 0.025, 0.025 diameters" in notice.sentence
 
 
+@pytest.mark.long
 def test_check_says_in_a_dozen_lines_what_it_says_of_an_ordinary_shaft():
     """Cautions of one kind stand in one line with their places."""
     wrapped = command("check", "geometry/intermediate_shaft.toml").stdout
@@ -924,7 +925,8 @@ def test_the_mass_of_check_counts_rigid_masses():
 
 
 @pytest.mark.parametrize("stiffness, slipped", [(1e15, False), (1e14, True)])
-def test_a_spring_that_stands_for_rigid_is_no_slip_in_units(stiffness, slipped):
+def test_a_spring_that_stands_for_rigid_is_no_slip_in_units(stiffness, slipped, monkeypatch):
+    monkeypatch.setattr(check, "GUARDS", {"units": GUARDS["units"]})
     springs = dict.fromkeys(("kxx", "kyy", "kzz"), stiffness)
     rod = sg.Segment.cylinder("rod", length=0.3, diameter=0.03)
     ends = [

@@ -304,7 +304,7 @@ def test_subset_of_models(overhung):
 def test_solid_alone_is_its_own_reference(rod):
     # coarse: a fifth is asked
     scene = rod.with_changes(ask=rod.ask.with_changes(tolerance=0.2))
-    found = compare(scene, ("solid",), settings={"solid": {"refinement": 1.0}}).results
+    found = compare(scene, ("solid",), settings={"solid": {"refinement": 0.5}}).results
     assert (
         found["verdict"]["reference"] == "solid"
         and found["deviations"] == []
@@ -506,6 +506,7 @@ def test_only_whole_files_are_left(folder):
     }
 
 
+@pytest.mark.long
 def test_pictures_of_an_earlier_run_do_not_stay(overhung, tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
     (tmp_path / "mode_euler.png").write_bytes(b"old")

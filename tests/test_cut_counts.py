@@ -59,7 +59,8 @@ def test_the_size_is_counted_on_the_mesh_without_what_is_cut(name):
 
 
 @pytest.mark.parametrize(
-    "name", ["keyway", *(pytest.param(p, marks=pytest.mark.slow) for p in PARTS if p != "keyway")]
+    "name",
+    [pytest.param(p, marks=pytest.mark.long if p == "keyway" else pytest.mark.slow) for p in PARTS],
 )
 def test_check_tells_of_the_part_with_its_features(name):
     scene = PARTS[name]

@@ -96,6 +96,10 @@ def here(monkeypatch, capfd, no_sudden_end):
 #: some seconds each; shorter pages show what these do, commands beside what they print
 SECONDS = {
     "guide/compare.md",
+    "guide/contact.md",
+    "guide/frequencies.md",
+    "guide/housings.md",
+    "guide/planetary.md",
     "guide/points.md",
     "guide/uncertainty.md",
     "guide/nonlinear.md",

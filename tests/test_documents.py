@@ -80,17 +80,25 @@ OF_TRAIN = {
 
 #: a second and more each
 DEAR = {
-    *("answer", "optimise", "compare", "stress", "deflect", "response", "receptance"),
+    *("answer", "sweep", "optimise", "stress", "deflect", "response", "receptance"),
     *("sweep of a train", "a shaft of it", "bearing of a train"),
 }
 
 
+#: many seconds: studies beside it guard the way of files, and other tests the study
+DEAREST = {"compare"}
+
+
+def mark_of(names):
+    """When a study of any of these names is run."""
+    if names & DEAREST:
+        return pytest.mark.slow
+    return pytest.mark.long if names & DEAR else ()
+
+
 def named(studies, kind=""):
     """Studies by name, the dear ones for whoever asks for them."""
-    return [
-        pytest.param(name, marks=pytest.mark.long if {name, name + kind} & DEAR else ())
-        for name in studies
-    ]
+    return [pytest.param(name, marks=mark_of({name, name + kind})) for name in studies]
 
 
 @pytest.mark.parametrize("study", named(OF_SHAFT))

@@ -207,7 +207,7 @@ def test_layers_are_counted_before_a_mesh_is_made():
     assert more[1] > more[0]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_step_part_has_layers():
     scene = sg.load("geometry/shaft_step.toml")
     coarse, fine = (

@@ -7,7 +7,9 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.body import as_supports
+from solidgear.core.bounds import harmonic
 from solidgear.core.bounds.clusters import ROOM
+from solidgear.core.judge import study
 from solidgear.core.judge.bounded import mode_bars
 from solidgear.core.judge.completeness import completeness
 from solidgear.core.judge.hidden import COMPLETE, COUNTED, complete_list, less_bars
@@ -49,6 +51,28 @@ def test_a_list_is_complete_below_the_lower_ends_of_what_lies_above(rubber_tail)
     assert shapes(truth, told[COMPLETE]) <= shapes(found, told[COMPLETE])
     assert "No mode missed below" in completeness(told, "harmonic")
     assert "No mode of this mesh missed below" in completeness(found.evidence, "harmonic")
+
+
+def test_what_bounds_the_end_of_a_list_is_solved_with_the_error_bars(monkeypatch):
+    """The last mesh solves its local problems once, for numbers, section ties and the end of the list."""
+    solved, at_end = [], []
+    local_energies, bound = harmonic.local_energies, study.complete_list
+    monkeypatch.setattr(
+        harmonic, "local_energies", lambda *a: solved.append(a[0]) or local_energies(*a)
+    )
+
+    def complete(*args):
+        before = len(solved)
+        listed = bound(*args)
+        at_end.append(len(solved) - before)
+        return listed
+
+    monkeypatch.setattr(study, "complete_list", complete)
+    scene = sg.load("geometry/shaft_stepped.toml")
+    solution = study.study(scene, "harmonic", {"order": 3, "layers": 0, "relative_size": 2.0})
+    assert COMPLETE in solution.modes.evidence and at_end == [0]
+    # one round: bending, axial, torsion
+    assert len(solved) == 3
 
 
 def test_bars_of_what_lies_above_a_list_are_taken_off_a_count():

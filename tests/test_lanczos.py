@@ -38,6 +38,17 @@ def test_eigenvalues_of_a_spectrum_with_twins_and_triplets():
     np.testing.assert_allclose(found.vectors.T @ m @ found.vectors, np.eye(9), atol=1e-12)
 
 
+def test_one_vector_at_a_time_finds_single_eigenvalues():
+    theta = np.concatenate([[9.0, 4.0, 1.0, 0.5], np.linspace(0.3, 0.001, 116)])
+    operator, mass, m, _ = problem(theta)
+    single = block_lanczos(operator, mass, start(120, 1), 4)
+    assert single.converged
+    np.testing.assert_allclose(single.theta, theta[:4], rtol=1e-12)
+    np.testing.assert_allclose(single.vectors.T @ m @ single.vectors, np.eye(4), atol=1e-12)
+    # blocks take more solves, in fewer calls
+    assert single.columns < block_lanczos(operator, mass, start(120, 4), 4).columns
+
+
 def test_residual_meets_the_tolerance_asked_for():
     operator, mass, m, _ = problem(SPECTRUM)
     for tolerance in (1e-3, 1e-6, 1e-9):

@@ -250,7 +250,7 @@ def test_the_coarser_mesh_that_is_offered_fits(monkeypatch):
     assert 0.5 * room < needed_mb(body, body.factoring) + size_of_body(body).matrices_mb < room
 
 
-@pytest.mark.long
+@pytest.mark.slow
 @PARDISO
 def test_what_is_offered_is_what_the_analysis_says(monkeypatch):
     given = {"element": "tet10", "refinement": 0.7}

@@ -395,6 +395,7 @@ def test_what_is_known_beforehand_stands_where_the_data_tell_nothing(rod):
     assert any("do not determine material.density" in sentence for sentence in found.sentences)
 
 
+@pytest.mark.long
 def test_data_and_what_was_known_are_weighed_by_their_deviations(rod):
     alone = identify(rod, PEAKS, ["material.E"], tol=1e-3)["material.E"]
     rod.write_text(ROD + '[uncertain]\n"material.E" = "200 GPa ± 2 %"\n')
@@ -519,6 +520,7 @@ def test_commands_tell_and_write_what_they_found(rod, tmp_path):
     assert data["predicted"][0]["name"] == "bending 4"
 
 
+@pytest.mark.long
 def test_a_mode_has_one_name_whatever_solid_finds_it():
     """Of a short cylinder two modes that are even around the axis swell more than they stretch."""
     scene = sg.load("validation/experiments/steel_cylinder.toml")

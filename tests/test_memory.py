@@ -10,7 +10,7 @@ import pytest
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine import threads
-from solidgear.core.machine.memory import available_mb, one_run
+from solidgear.core.machine.memory import SMALL_MB, NoRoom, available_mb, one_run, require
 from solidgear.core.machine.processes import Other, family_memory, resident_mb, tree_seconds
 
 MB = 2**20
@@ -118,6 +118,16 @@ def test_bad_limit_is_refused(root, monkeypatch, text):
     monkeypatch.setenv("SOLIDGEAR_MEMORY_MB", text)
     with pytest.raises(SolidgearError, match="SOLIDGEAR_MEMORY_MB"):
         available_mb(root())
+    with pytest.raises(SolidgearError, match="SOLIDGEAR_MEMORY_MB"):
+        require(1.0, "4 unknowns")  # for which memory is not read
+
+
+def test_memory_is_read_for_needs_that_may_be_refused(monkeypatch):
+    monkeypatch.setattr("solidgear.core.machine.memory.available_mb", lambda: 10.0)
+    require(SMALL_MB, "4 unknowns")
+    with pytest.raises(NoRoom, match="need about 26 MB to factor by superlu, 10 MB are free"):
+        require(SMALL_MB + 1, "4 unknowns", "superlu")
+    require(SMALL_MB + 1, "4 unknowns", free=30.0)
 
 
 @pytest.mark.parametrize(

@@ -85,6 +85,7 @@ def test_steps_are_meshed_finer_until_no_segment_lacks_anything(monkeypatch):
     assert abs(alone.quality.volume / mended.quality.volume - 1) < 1e-4
 
 
+@pytest.mark.long
 def test_volume_that_a_mesh_of_a_small_motor_loses_is_in_its_facts(monkeypatch):
     """Cutting folded elements in two keeps it; straight edges take 1e-3 of the volume without."""
     ends, radii = (0.0, 4e-3, 10e-3, 13e-3), (0.5e-3, 1e-3, 0.4e-3)

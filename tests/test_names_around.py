@@ -9,7 +9,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.body import as_supports
-from solidgear.core.solve.naming import Names, Projection
+from solidgear.core.solve.circumference import Circumference
+from solidgear.core.solve.naming import Names, Projection, same
 
 STOUT = sg.Scene.from_parts([sg.Segment.cylinder("body", length=0.0134, diameter=0.019)])
 #: lowest shapes of the harmonic solid: 23 modes, of n = 0 to 4, axial, breathing and torsion among them
@@ -42,13 +43,43 @@ def test_any_mixture_of_an_axial_mode_with_a_pair_of_three_waves_is_named_by_wha
     for turn in (even, half):
         for signs in product([-1, 1], repeat=3):
             mixed = [{0: shape} for shape in (columns @ (signs * turn).T).T]
-            shapes = [names.describe(one) for one in mixed]
+            shapes = names.describe(mixed)
             near = names.unmixed(shapes, mixed, np.ones(3))
             families = ["axial", "ovalising n=3", "ovalising n=3"]
             assert sorted(shape.family for shape in near) == families
             assert [shape.waves for shape in near].count(3) == 2
             # what lies further apart than this mesh splits twins is what it is
             assert names.unmixed(shapes, mixed, np.array([1.0, 1.1, 1.2])) == shapes
+
+
+def test_shapes_are_fitted_around_the_axis_together_as_alone():
+    t, y = np.meshgrid(np.linspace(0.0, 2 * np.pi, 16, endpoint=False), [0.0, 0.01, 0.02])
+    radius, t, y = 0.1 + y.ravel(), t.ravel(), y.ravel()
+    nodes = np.array([radius * np.sin(t), y, radius * np.cos(t)])
+    fit = Circumference(nodes, np.full(len(t), 1 / len(t)))
+    shapes = np.random.default_rng(0).standard_normal((3, len(t), 3))
+    profiles, shares = fit(shapes)
+    for shape, profile, share in zip(shapes, profiles, shares):
+        alone = fit(shape)
+        np.testing.assert_allclose(profile, alone[0], rtol=1e-12)
+        np.testing.assert_allclose(share, alone[1], rtol=1e-12)
+
+
+def test_a_count_and_a_longer_list_name_no_shape_anew(monkeypatch):
+    described = []
+    describe = Names._shape
+    monkeypatch.setattr(
+        Names, "_shape", lambda names, v: described.append(same(v)) or describe(names, v)
+    )
+    scene = sg.load("geometry/shaft_stepped.toml")
+    body = sg.build(scene, "harmonic", order=2, layers=1)
+    listed = sg.modes(body, scene, n=4)
+    first = list(described)
+    assert len(first) == len(set(first)) > 4
+    assert sg.modes(body, scene, n=4, count=True).names == listed.names
+    assert described == first
+    sg.modes(body, (), n=4)  # on other springs, whose shapes are others
+    assert len(described) > len(first)
 
 
 @pytest.mark.long

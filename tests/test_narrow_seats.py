@@ -89,6 +89,7 @@ def test_half_a_part_has_the_seats_of_the_whole():
     assert narrow_share(scene, half, 2) > share_of(2, 1e-6, AVERAGED) + 0.01
 
 
+@pytest.mark.long
 def test_of_hexahedra_with_all_products_one_order_more_tells_less():
     scene = bar(12.0, tie="rigid")
     exact = {str(v.quantity): v.value for v in sg.answer(scene, 1e-3, ask=("C_yy",)).values}

@@ -60,6 +60,7 @@ def test_three_motions_live_at_one_speed(loud):
     assert upper == pytest.approx(0.22472, abs=2e-5)
 
 
+@pytest.mark.long
 def test_sweeps_in_time_follow_the_branch_and_jump_where_it_turns(loud):
     up, down = (loud.points[k].omega for k in loud.turning)
     rising = sweep(pair(0.05), [0.7, 0.75, 0.8, up - 1e-3, up + 1e-3])
@@ -126,6 +127,7 @@ def test_multipliers_are_how_a_disturbed_motion_fades(law):
     assert product < np.exp(-2 * ZETA * period) * (1 + 1e-9)
 
 
+@pytest.mark.long
 def test_where_a_period_doubles_a_branch_of_two_periods_begins_that_time_confirms():
     own = pair(0.1)
     branch = follow(own, 1.0, 2.5)

@@ -13,7 +13,7 @@ import notebooks  # noqa: E402
 
 FOLDER = ROOT / "examples" / "notebooks"
 #: compares all models, refined until the solid can judge: some ten seconds
-MARKS = {"compare": pytest.mark.slow, "tutorial": pytest.mark.long, "tap_test": pytest.mark.long}
+MARKS = dict.fromkeys(("compare", "tutorial", "tap_test"), pytest.mark.slow)
 NAMES = sorted(p.stem for p in FOLDER.glob("*.ipynb"))
 
 

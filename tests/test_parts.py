@@ -510,7 +510,7 @@ def test_the_shipped_scene_has_a_sequence_of_meshes(shipped):
 
 @pytest.mark.parametrize(
     "cases, seed",
-    [pytest.param(6, 7, marks=pytest.mark.long), pytest.param(30, 8, marks=pytest.mark.slow)],
+    [pytest.param(4, 7, marks=pytest.mark.long), pytest.param(30, 8, marks=pytest.mark.slow)],
     ids=["few", "many"],
 )
 def test_broken_files_end_in_a_sentence(cases, seed):

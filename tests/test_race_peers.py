@@ -43,7 +43,10 @@ EDGES = {
 
 @pytest.fixture(
     scope="module",
-    params=[("rigid", TET, "C3D10"), ("average", HEX, "C3D20")],
+    params=[
+        pytest.param(("rigid", TET, "C3D10"), marks=pytest.mark.long),
+        ("average", HEX, "C3D20"),
+    ],
     ids=["rigid tet", "average hex"],
 )
 def case(request):

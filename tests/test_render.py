@@ -18,13 +18,14 @@ from skfem.refdom import RefHex, RefTet
 
 import solidgear as sg
 from solidgear.comparison.page import write
+from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.core.solve.modes import Mode
 from solidgear.show import render
 from solidgear.show.folder import OWN, clear
-from solidgear.show.outputs import OUTPUTS, Output, write_vtu
+from solidgear.show.outputs import OUTPUTS, Output, node_order, write_vtu
 from solidgear.show.render import PACKAGES, Drawing, RenderJob, render_modes
 
 ROOT = Path(__file__).parents[1]
@@ -256,6 +257,15 @@ def volumes(points, cells, vtk_name):
         det = np.linalg.det(np.einsum("enc,kn->eck", points[cells], np.reshape(slopes, (3, -1))))
         total, least = total + weight * det, np.minimum(least, det)
     return total, least
+
+
+@pytest.mark.parametrize("element", ELEMENTS.values(), ids=ELEMENTS)
+def test_nodes_stand_in_the_order_of_vtk(element):
+    from vtkmodules import vtkCommonDataModel
+
+    cell = getattr(vtkCommonDataModel, element.vtk)()
+    places = np.reshape(cell.GetParametricCoords(), (-1, 3))[: cell.GetNumberOfPoints()]
+    assert node_order(places, element.vtk).tolist() == list(range(len(places)))
 
 
 @pytest.mark.parametrize(

@@ -83,6 +83,7 @@ def test_two_modes_within_their_half_width_are_told_apart_where_they_stand_out()
     assert np.max(np.abs(off(found, near))) < 4.5
 
 
+@pytest.mark.long
 def test_residues_are_those_of_the_modes_whatever_the_noise_of_each_response():
     clean = accelerances(4, points=5, noise=0.0)
     drawn = np.random.default_rng(9).standard_normal((*clean.shape, 2)) @ [1, 1j]
@@ -145,6 +146,7 @@ def test_a_hammer_that_goes_round_tells_the_shapes_of_a_sensor_that_does():
     assert np.array_equal(sensor.values, hammer.values) and sensor.values[:, 1, 2].all()
 
 
+@pytest.mark.long
 def test_receptances_have_the_modes_of_accelerances(tmp_path):
     values = accelerances(1, points=4, noise=1e-4)
     one = load_measured(measured(tmp_path / "a.uff", values=values))

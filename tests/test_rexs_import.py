@@ -481,8 +481,13 @@ def test_the_command_writes_all_or_nothing(tmp_path):
     assert not (tmp_path / "b").exists()
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("box", [helical, planetary])
+@pytest.mark.parametrize(
+    "box",
+    [
+        pytest.param(helical, marks=pytest.mark.long),
+        pytest.param(planetary, marks=pytest.mark.slow),
+    ],
+)
 def test_trains_answer_without_a_hand_on_them(box, tmp_path):
     path = str(written(box(), tmp_path))
     for name in ("check", "system-modes", "deflect", "contact"):

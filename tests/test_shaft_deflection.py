@@ -23,10 +23,12 @@ def coarse(assembly, order=3):
     return replace(assembly, settings={"harmonic": {"order": order}})
 
 
-@pytest.mark.long
 @pytest.mark.parametrize(
     ("file", "load"),
-    [(CATALOGUE, None), (SPRINGS, {"z": 2000.0, "x": 500.0, "y": 300.0})],
+    [
+        pytest.param(CATALOGUE, None, marks=pytest.mark.slow),
+        pytest.param(SPRINGS, {"z": 2000.0, "x": 500.0, "y": 300.0}, marks=pytest.mark.long),
+    ],
     ids=["catalogue", "springs"],
 )
 def test_error_bars_hold_against_a_finer_mesh(file, load):

@@ -1,6 +1,8 @@
 """Loads at several places of a shaft: forces of gears and belts, statics, deflection, torque."""
 
+import json
 import math
+import tomllib
 from itertools import pairwise
 from pathlib import Path
 
@@ -8,14 +10,20 @@ import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.comparison.two.loaded import loaded_changes
 from solidgear.core.errors import SolidgearError
 from solidgear.core.loading import as_written
 from solidgear.core.scene.acting import acting_loads, station_loads
+from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.system.gear_mesh import line_of_action
+from solidgear.exchange.rexs.export.exporting import exported
+from solidgear.exchange.rexs.importing import imported
+from solidgear.show.remarks import load
 from solidgear.strength.deflection.at_rest import deflection
 from solidgear.strength.load import AT_REST
 from solidgear.strength.stress.section_forces import forces_of
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.load.operation import scene_loads
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COUNTERSHAFT = GEOMETRY / "countershaft.toml"
@@ -65,7 +73,7 @@ def test_printed_reactions_and_moments_of_a_countershaft():
     assert moments(9.5) == [2220, 907, 2398]
     assert round(abs(forces.at(5 * INCH)[4]) / POUND_INCH) == 3240
     assert forces.at(1.5 * INCH)[4] == forces.at(10 * INCH)[4] == 0
-    assert solved.statics.left < 1e-10
+    assert solved.statics.imbalance < 1e-10
     (stretch,) = solved.statics.torque
     assert (stretch.start / INCH, stretch.end / INCH) == pytest.approx((2.75, 8.5))
 
@@ -123,7 +131,7 @@ def test_twist_equals_that_of_shafts_in_a_row():
     assert twisted["gear 3"][4] == pytest.approx(angle, rel=1e-9)
 
 
-def held(name, place, turning=0.0):
+def mounted(name, place, turning=0.0):
     stiffness = dict.fromkeys(("kxx", "kyy", "kzz"), 1e9) | ({"kthy": turning} if turning else {})
     return sg.Bearing(name=name, y=place, seat_width=0.02, stiffness=stiffness)
 
@@ -132,7 +140,7 @@ def rod(*loads, bearings=(), **rest):
     """A rod of 0.4 m on two bearings, with a gear in its middle."""
     return sg.Scene.from_parts(
         [sg.Segment.cylinder("rod", length=0.4, diameter=0.04)],
-        bearings=bearings or (held("A", 0.05), held("B", 0.35)),
+        bearings=bearings or (mounted("A", 0.05), mounted("B", 0.35)),
         port=sg.Port(name="gear", y=0.2, lo=0.18, hi=0.22),
         loads=loads,
         **rest,
@@ -141,22 +149,22 @@ def rod(*loads, bearings=(), **rest):
 
 def test_bearings_that_hold_the_shaft_share_a_torque_by_stiffness():
     torque = sg.ShaftLoad(name="drive", on="gear", torque=300.0)
-    one = settled(rod(torque, bearings=[held("A", 0.05, 2e5), held("B", 0.35)]))
-    (a, b) = one.shafts[0].bearings
+    single = settled(rod(torque, bearings=[mounted("A", 0.05, 2e5), mounted("B", 0.35)]))
+    (a, b) = single.shafts[0].bearings
     assert (a.load[4], b.load[4]) == pytest.approx((300.0, 0.0))
-    assert one.shafts[0].ports["A"][4] == pytest.approx(300.0 / 2e5)
-    assert one.statics.left < 1e-10
+    assert single.shafts[0].ports["A"][4] == pytest.approx(300.0 / 2e5)
+    assert single.statics.imbalance < 1e-10
 
-    scene = rod(torque, bearings=[held("A", 0.05, 2e5), held("B", 0.35, 5e5)])
-    both = settled(scene.with_attachment("section"))
-    (a, b) = both.shafts[0].bearings
+    scene = rod(torque, bearings=[mounted("A", 0.05, 2e5), mounted("B", 0.35, 5e5)])
+    double = settled(scene.with_attachment("section"))
+    (a, b) = double.shafts[0].bearings
     polar = math.pi * 0.02**4 / 2
     shaft = sg.STEEL.E / (2 + 2 * sg.STEEL.nu) * polar / 0.15  # from the gear to either bearing
     soft = [1 / 2e5 + 1 / shaft, 1 / 5e5 + 1 / shaft]  # springs in series, two ways in parallel
     share = soft[1] / sum(soft)
     assert a.load[4] == pytest.approx(300.0 * share, rel=1e-8)
     assert a.load[4] + b.load[4] == pytest.approx(300.0)
-    assert both.shafts[0].ports["B"][4] == pytest.approx(b.load[4] / 5e5)
+    assert double.shafts[0].ports["B"][4] == pytest.approx(b.load[4] / 5e5)
 
 
 def test_a_load_with_a_place_of_its_own_is_no_lumped_point():
@@ -173,6 +181,11 @@ def test_a_load_with_a_place_of_its_own_is_no_lumped_point():
         {"name": "pulley", "x": 1000.0, "span": [0.38, 0.4]},
     ]
     assert sg.Scene.from_dict(scene.to_dict()) == scene
+    spread = rod(sg.ShaftLoad(on="rod", z=1.0), sg.ShaftLoad(on="A", x=1.0)).loads
+    assert [(load.name, load.station, load.lo, load.hi) for load in spread] == [
+        ("rod", "rod", 0.0, 0.4),
+        ("A", "A", None, None),
+    ]
 
 
 @pytest.mark.parametrize("hand", ["left", "right"])
@@ -195,11 +208,11 @@ def test_tooth_forces_point_along_the_line_of_action(hand, torque, cone, spiral)
 
 
 def test_pulls_of_a_belt_follow_from_any_two_words():
-    told = {"torque": 50.0, "tight": 750.0, "slack": 250.0, "pull_ratio": 3.0}
-    words = [*told]
+    words_of_belt = {"torque": 50.0, "tight": 750.0, "slack": 250.0, "pull_ratio": 3.0}
+    words = [*words_of_belt]
     for k, first in enumerate(words):
         for second in words[k + 1 :]:
-            known = {word: told[word] for word in (first, second)}
+            known = {word: words_of_belt[word] for word in (first, second)}
             sense = {} if "torque" in known else {"sense": "driven"}
             belt = sg.ShaftLoad(name="b", on="b", diameter=0.2, towards="30 deg", **known, **sense)
             x, y, z, thx, thy, thz = belt.six()
@@ -283,3 +296,196 @@ def test_refused_in_a_sentence(kind, tmp_path):
         as_written(path)
     message = str(caught.value)
     assert says in message and message.count("\n") == 0 and "spoilt.toml: " in message, message
+
+
+# ------------------------------------------------------------------------------------------- cases
+def catalogued(*cases, **rest):
+    """The rod on deep groove ball bearings with a spur gear, which a torque at its end turns."""
+    bearings = [
+        sg.Bearing(name="A", y=0.05, bore=0.04, designation="6208", clearance="0 um"),
+        sg.Bearing(
+            name="B", y=0.35, bore=0.04, designation="6208", clearance="0 um", support="floating"
+        ),
+    ]
+    gear = sg.ShaftLoad(
+        name="teeth", on="gear", torque=150.0, pitch_diameter=0.12, towards="+x", **rest
+    )
+    hub = sg.ShaftLoad(name="coupling", position=0.39, seat_width=0.02, torque=-150.0)
+    return rod(gear, hub, bearings=bearings, cases=cases)
+
+
+FULL = sg.LoadCase(name="full", speed="1500 rpm", share=0.25)
+HALF = sg.LoadCase(
+    name="half", factors={"teeth": 0.5, "coupling": 0.5}, speed="3000 rpm", share=0.75
+)
+BACK = sg.LoadCase(name="back", factors={"teeth": -1, "coupling": -1}, speed="600 rpm")
+
+
+def test_lives_in_all_cases_add_their_damage():
+    result = sg.bearing(catalogued(FULL, HALF))
+    assert result.case == "full" and [fact.name for fact in result.facts] == ["A", "B"]
+    assert result.facts[0].life.speed == pytest.approx(50 * math.pi)
+    (a, _) = result.lives
+    full, half = (point.life for point in a.points)
+    assert [point.label for point in a.points] == ["full (1500 rpm)", "half (3000 rpm)"]
+    # half the load of a ball bearing is eight times the life, but for its small moment
+    assert half.life.basic / full.life.basic == pytest.approx(8.0, rel=0.02)
+    damage = [
+        0.25 * 1500 * 60 / full.life.reference,
+        0.75 * 3000 * 60 / half.life.reference,
+    ]
+    assert a.duty.hours == pytest.approx(1 / sum(damage))
+    assert a.duty.damage == pytest.approx([part / sum(damage) for part in damage])
+    assert [row["at"] for row in result.as_dict()["cases"][0]["points"]] == [
+        "full (1500 rpm)",
+        "half (3000 rpm)",
+    ]
+    assert result["A"] is result.facts[0]
+    chosen = sg.bearing(catalogued(FULL, HALF), "B", case="2")
+    assert chosen.case == "half" and chosen.facts[0].load == pytest.approx(
+        result.facts[1].load / 2, rel=0.02, abs=1.0
+    )
+
+
+def test_bearings_settle_under_the_first_case_and_anew_under_another():
+    scene = catalogued(FULL, HALF)
+    stiff = [s.settled.bearings[0].stiffness[2, 2] for s in (scene, scene.with_case("half"))]
+    assert stiff[1] < stiff[0]
+    assert all(b.matrix is None for b in scene.settled.with_case("half").bearings)
+    loads = tuple(load.with_changes(torque=load.torque / 2) for load in scene.loads)
+    halved = scene.with_changes(loads=loads).settled.bearings[0].stiffness[2, 2]
+    assert halved == pytest.approx(stiff[1], rel=1e-9)
+    assert load(scene, "half").bearings[0].stiffness[2, 2] == stiff[1]  # as of --case
+
+
+def test_every_case_is_shown_and_a_reversed_one_presses_the_other_flanks(run, tmp_path):
+    path = tmp_path / "rod.toml"
+    scene = catalogued(FULL.with_changes(share=None), BACK)
+    scene.to_toml(path)
+    said = run("deflect", path, "-f", "euler")[1]
+    assert "In the case full, under" in said and "Torque along the shaft" in said
+    rows = [line.split() for line in said.splitlines() if line.startswith((" full (", " back ("))]
+    assert [row[0] for row in rows] == ["full", "back"] + ["full", "full", "back", "back"]
+    full, back = (np.array(row[4:7], float) for row in rows[:2])  # um of the gear
+    assert back[2] == pytest.approx(-full[2], rel=0.02) and back[0] == pytest.approx(
+        full[0], rel=0.02
+    )
+    data = json.loads(run("deflect", path, "-f", "euler", "--case", "back", "--json")[1])
+    assert data["case"] == "back" and data["points"] == []
+    by_name = {load["name"]: load for load in data["loads"]}
+    assert by_name["teeth"]["factor"] == -1 and by_name["teeth"]["six"][4] == pytest.approx(-150)
+    assert data["models"]["euler"]["statics"]["imbalance"] < 1e-9
+    code, _, refused = run("-q", "deflect", path, "-f", "euler", "--case", "forth")
+    assert code == 1 and "there is no case \"forth\"; there are 1 'full', 2 'back'" in refused
+
+
+def test_a_drive_leaves_where_the_file_says():
+    scene = rod(torque_at="B")
+    result = sg.deflect(scene, "euler", load="z=1 kN", drive={"A": "40 N*m"}).judge
+    assert [(load.name, load.station) for load in result.load.acting] == [
+        ("load", "gear"),
+        ("drive at A", "A"),
+        ("torque at B", "B"),
+    ]
+    (stretch,) = result.statics.torque
+    assert (stretch.start, stretch.end, stretch.torque) == pytest.approx((0.05, 0.35, -40.0))
+    # as the torques of the scene, which stress sees as well
+    stressed = sg.stress(scene, "euler", load="z=1 kN", drive={"A": 40.0})
+    assert stressed.shafts[0].found.forces.at(0.1)[4] == pytest.approx(-40.0)
+
+
+# ------------------------------------------------------------------------------------------- files
+def test_loads_and_cases_go_through_files_of_any_kind(tmp_path):
+    scene = catalogued(FULL, HALF).with_changes(
+        turns="-y", torque_at="gear", name="rod", weight="x"
+    )
+    assert sg.Scene.from_dict(scene.to_dict()) == scene
+    scene.to_toml(tmp_path / "rod.toml")
+    assert as_written(tmp_path / "rod.toml") == scene
+    out = exported(scene)
+    assert {"load", "case", "turns", "torque_at"} <= {*dict(out.without_place)["rod"]}
+    again = sg.Scene.from_dict(tomllib.loads(imported(out.document, "rod").files["rod.toml"]))
+    for key in ("loads", "cases", "turns", "torque_at", "weight"):
+        assert getattr(again, key) == getattr(scene, key), key
+
+
+def test_entries_of_loads_vary_and_may_have_ranges(tmp_path):
+    scene = catalogued().with_changes(
+        torque_at="A", bearings=(mounted("A", 0.05), mounted("B", 0.35))
+    )
+    vary = "load.teeth.torque=100 N*m,200 N*m"
+    rows = sg.sweep(scene, vary, model="euler", n=1)
+    assert rows["load.teeth.torque"].tolist() == [100.0, 200.0]
+    ranged = sg.Scene.from_dict({**scene.to_dict(), "uncertain": {"load.teeth.torque": "± 10 %"}})
+    (entry,) = ranged.uncertain
+    scaled = with_scaled_entry(ranged, entry.path, entry.high)
+    assert scaled.loads[0].torque == pytest.approx(165.0)
+    assert scaled.loads[1] == ranged.loads[1]
+
+
+def test_loads_of_a_shaft_in_a_train_act_where_they_are():
+    train = sg.load_train(GEOMETRY / "gearbox_train.toml")
+    pull = sg.ShaftLoad(name="pull", on="A", x=700.0)
+    scene = train.pinion.scene.with_changes(load=None, loads=(pull,))
+    shaft = train.shafts["pinion"].with_changes(scene=scene, scene_load="added")
+    assembly = Assembly(train.with_changes(pinion=shaft), solves_teeth=False)
+    loads, notes = scene_loads(assembly, "pinion", {}, AT_REST)
+    assert {name: six.tolist() for name, six in loads.items()} == {"A": [700.0, 0, 0, 0, 0, 0]}
+    assert "is added to the mesh force" in notes[0]
+
+
+def test_two_shafts_are_compared_under_their_loads():
+    single, double = (rod(sg.ShaftLoad(on="gear", z=f"{k} kN")) for k in (1, 2))
+    changes, reason = loaded_changes([single, double])
+    by_name = {number.name: number for number in changes}
+    assert not reason and [*by_name] == [
+        "deflection of gear",
+        "radial load of A",
+        "radial load of B",
+    ]
+    moved = by_name["deflection of gear"]
+    assert moved.change.b == pytest.approx(2 * moved.change.a) and moved.verdict == "resolved"
+    assert by_name["radial load of A"].change.a == pytest.approx(500.0)
+    assert loaded_changes([single, rod()]) == ((), "")
+    loose = [rod(sg.ShaftLoad(on="gear", y=1e3), bearings=[mounted("A", 0.05)])] * 2
+    free = [
+        s.with_changes(bearings=[s.bearings[0].with_changes(support="floating")]) for s in loose
+    ]
+    assert "no bearing holds shaft in y" in loaded_changes(free)[1]
+
+
+# ------------------------------------------------------------------------------------------ weight
+def test_a_shaft_bends_under_its_weight():
+    """A rod on two supports near its ends: 5 q l^4 / (384 E I) less what both overhangs lift."""
+    supports = [mounted("A", 0.01), mounted("B", 0.39)]
+    scene = rod(bearings=supports, weight="-z").with_attachment("section")
+    solved = settled(scene)
+    area, inertia = math.pi * 0.02**2, math.pi * 0.02**4 / 4
+    q, stiff = sg.STEEL.density * area * 9.80665, sg.STEEL.E * inertia
+    span, over = 0.38, 0.01
+    sag = 5 * q * span**4 / 384 / stiff - q * over**2 / 2 * span**2 / 8 / stiff
+    sag += q * 0.4 / 2 / 1e9  # of the bearings
+    assert solved.displacement["gear"][2].value == pytest.approx(-sag, rel=1e-6)
+    assert [b.load[2] for b in solved.shafts[0].bearings] == pytest.approx([-q * 0.2] * 2)
+    assert solved.statics.imbalance < 1e-9 and solved.load.acting[0].name == "weight"
+
+
+def test_bearings_settle_alike_under_weight_by_either_equilibrium():
+    """The shaft seen from its ports, and the system that carries its own mass."""
+    disc = sg.PointMass(name="disc", mass=40.0, on="gear", offset=[0.0, 0.03, 0.0])
+    scene = catalogued().with_changes(weight="-x", masses=(disc,))
+    solved = settled(scene, "timoshenko")
+    by_name = {b.name: b for b in scene.settled.bearings}
+    for bearing in solved.shafts[0].bearings:
+        tangent = bearing.stiffness
+        assert by_name[bearing.name].matrix == pytest.approx(
+            (tangent + tangent.T) / 2, rel=1e-6, abs=1e-6 * np.abs(tangent).max()
+        )
+    light = catalogued().settled.bearings[0]
+    assert abs(light.stiffness[0, 0] / by_name["A"].stiffness[0, 0] - 1) > 0.01
+    assert solved.statics.imbalance < 1e-9
+
+
+def test_weight_is_whole_on_a_beam_without_fillets():
+    scene = as_written(GEOMETRY / "pinion_filleted.toml").with_changes(weight="-z")
+    assert scene.blends and settled(scene).statics.imbalance < 1e-9

@@ -318,7 +318,7 @@ def test_peak_of_a_whole_comparison_within_a_third(name):
     assert peak < (1900 if name == "motor_rotor" else 1500)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_comparison_stays_below_the_limit(monkeypatch):
     """A finer mesh that would not fit is refused with its number, and what was solved before is
     kept.

@@ -31,6 +31,7 @@ def measured():
     return of
 
 
+@pytest.mark.long
 def test_springs_from_nothing_to_a_clamp(measured):
     finding = measured("bearing_extremes")["bearing_extremes"]
     rows = [r for r in finding.rows if r["k N/m"] > 0 and r["elements"] == 160]
@@ -122,6 +123,7 @@ def test_guyan_drifts_with_the_fourth_power(measured):
     assert max(past) > 1  # the pole it does not know
 
 
+@pytest.mark.long
 def test_effective_mass_can_be_negative_second_or_hollow(measured):
     rows = measured("effective_mass_limits")["effective_mass_limits"].rows
     assert {"first", "second", "negative"} <= {r["mode-matched"] for r in rows}
@@ -168,6 +170,7 @@ def test_doubtful_matrices(measured):
     assert max(r["frequency error"] for r in same) < 1e-5
 
 
+@pytest.mark.long
 def test_a_torn_pair_takes_two_numbers(measured):
     rows = measured("split_pairs")["split_pairs"].rows
     beam = {r["anisotropy"]: r for r in rows if r["body"] == "timoshenko"}

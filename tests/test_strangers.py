@@ -152,7 +152,7 @@ def test_check_does_not_condemn_a_rigid_seat(checked):
     "name",
     [
         pytest.param("symmetric_shaft", marks=pytest.mark.slow),
-        "false_valid_port_section",
+        pytest.param("false_valid_port_section", marks=pytest.mark.long),
         pytest.param("check_rigid_seat", marks=pytest.mark.slow),
     ],
 )

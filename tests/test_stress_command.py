@@ -12,6 +12,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.scene.closed_form import mass_properties
+from solidgear.core.scene.gravity import GRAVITY
 from solidgear.cuts.features import RingGroove
 from solidgear.strength.load import driven
 from solidgear.strength.stress import shaft
@@ -19,7 +20,7 @@ from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.sheet import shaft_tables
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.file.operation import GRAVITY, OperatingPoint
+from solidgear.trains.file.operation import OperatingPoint
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 FILLETED = GEOMETRY / "pinion_filleted.toml"

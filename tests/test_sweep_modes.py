@@ -179,6 +179,7 @@ def test_ovalising_modes_do_not_feel_bearings():
     assert own and all(np.abs(frequency / f - 1).min() < 1e-8 for f in own)
 
 
+@pytest.mark.long
 def test_in_the_solid_one_block_holds_everything():
     """A coarse 3D body; its pairs are exact by symmetry, so names and pairs are those of `modes`."""
     body = sg.build(

@@ -225,7 +225,7 @@ def test_contact_holds_in_random_cases():
         contact_holds(*case)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_contact_holds_in_a_thousand_random_cases():
     for case in random_cases(1002):
         contact_holds(*case)

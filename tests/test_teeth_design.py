@@ -132,6 +132,7 @@ def test_relief_and_torque_make_a_curve_for_each_relief(task, rows):
         task_of(RELIEF, "pinion.crowning=0 um,5 um").refuse_chart()
 
 
+@pytest.mark.long
 def test_a_sweep_over_torque_alone_has_curves_of_all_numbers(tmp_path):
     swept = sg.sweep(GEARBOX, TORQUE, ask=["contact"], out=tmp_path / "rows.csv")
     assert swept.error_curves == ()
@@ -303,6 +304,7 @@ def test_a_verdict_says_where_the_mesh_stiffness_comes_from():
     assert tooth_stiffness(Assembly(sg.load_train(GEARBOX))) == ()
 
 
+@pytest.mark.long
 def test_two_trains_beside_each_other_say_which_has_its_stiffness_from_teeth():
     train = sg.load_train(AXLE)
     point = OperatingPoint(torque=300.0)

@@ -85,6 +85,7 @@ def test_the_ring_of_all_pitches_solved_at_once_moves_as_the_waves_of_one():
     assert np.abs((teeth.port_compliance - direct) / scale).max() < 1e-9
 
 
+@pytest.mark.long
 def test_sides_of_a_pitch_move_smoothly_enough():
     usual, free = (coarse(layer=0.5, slices=10, power=power) for power in (0.5, 2.0))
     for tooth in (0, 1):
@@ -117,6 +118,7 @@ def test_teeth_of_the_other_hand_are_mirrored():
     assert np.abs(turned_back.table(1) - usual.table(1)).max() > 1e-3 * np.abs(usual.table(1)).max()
 
 
+@pytest.mark.long
 def test_half_as_many_slices_have_the_means_of_pairs():
     few, many = coarse(HELICAL), coarse(HELICAL, slices=8)
     means = many.with_rim(1).reshape(len(few.radii), 4, 2, len(few.radii), 4, 2).mean(axis=(2, 5))

@@ -32,6 +32,12 @@ def train():
 
 
 @pytest.fixture(scope="module")
+def filled(train):
+    """The train with the stiffness and the loaded error of its teeth."""
+    return mesh_of_teeth(train.with_changes(mesh=train.mesh.with_changes(stiffness="teeth")))
+
+
+@pytest.fixture(scope="module")
 def carried(train):
     return Carried.at_rest(with_sections(train), train.point)
 
@@ -187,9 +193,7 @@ def test_soft_supports_do_not_change_the_teeth(contact):
     assert contact.cycle.tangent.mean() == pytest.approx(contact.aligned.tangent.mean(), rel=0.05)
 
 
-def test_a_train_takes_the_stiffness_of_its_teeth(train):
-    mesh = train.mesh.with_changes(stiffness="teeth")
-    filled = mesh_of_teeth(train.with_changes(mesh=mesh))
+def test_a_train_takes_the_stiffness_of_its_teeth(train, filled):
     stiffness = filled.mesh.stiffness
     expected = solved(train).cycle.tangent.mean()
     assert stiffness == pytest.approx(expected, rel=0.05)
@@ -200,12 +204,11 @@ def test_a_train_takes_the_stiffness_of_its_teeth(train):
     assert np.all(stiff >= usual * (1 - 1e-4)) and stiff.max() > 1.005 * usual.max()
 
 
-def test_the_error_of_a_train_is_along_the_line_of_action(train):
+def test_the_error_of_a_train_is_along_the_line_of_action(train, filled):
     """The rows of a mesh are normal to its teeth; the error of the study is an arc on the base
     cylinder, larger by the helix.
     """
-    asked = train.with_changes(mesh=train.mesh.with_changes(stiffness="teeth"))
-    orders = np.array(mesh_of_teeth(asked).mesh.transmission_error.orders)
+    orders = np.array(filled.mesh.transmission_error.orders)
     carried = Carried.at_rest(with_sections(train), train.point)
     solved_pair = mesh_contact(carried, carried.train.pairs[0])
     arcs = np.abs(solved_pair.cycle.orders(5))
@@ -224,12 +227,12 @@ def test_a_train_that_coasts_has_the_line_of_action_of_the_flank_that_carries(na
     assert by_teeth @ by_geometry > 0.98
 
 
-def test_over_a_cycle_a_mean_force_gives_the_loaded_error_back(train):
+def test_over_a_cycle_a_mean_force_gives_the_loaded_error_back(train, filled):
     """At rest a spring of the stiffness at each position, with the error that is left, gives way as the
     teeth do.
     """
     asked = train.with_changes(mesh=train.mesh.with_changes(stiffness="teeth"))
-    plain, varying = mesh_of_teeth(asked).mesh, mesh_of_teeth(asked, varies="mesh").mesh
+    plain, varying = filled.mesh, mesh_of_teeth(asked, varies="mesh").mesh
     assert plain.stiffness_cycle is None
     cycle = varying.stiffness_cycle
     angle = np.array(cycle.angle)[:-1] * train.pinion.teeth

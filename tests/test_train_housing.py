@@ -23,6 +23,8 @@ from tests.test_train_many import BEARING, DENSITY, MESHES, SHAFTS, by_hand, her
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 RIGID = "rigid/timoshenko"
+#: where a solid is only what a lumped shaft rests on
+COARSE = {"harmonic": {"order": 2, "layers": 1}}
 MASS, CENTRE = 85.0, np.array([-0.1, 0.12, 0.04])
 INERTIA = np.array([[3.1, 0.2, 0.0], [0.2, 2.2, -0.1], [0.0, -0.1, 2.9]])
 SPRING, MOUNTS = (4e6, 3e6, 6e6), ((-0.3, 0.0, -0.15), (0.2, 0.05, -0.15), (0.0, 0.3, -0.1))
@@ -394,15 +396,15 @@ def test_finer_meshes_stay_within_the_bars_of_a_train_in_a_housing(train):
 @pytest.mark.long
 def test_mixes_are_judged_where_a_housing_stands_on_nothing(bare):
     """Seven motions at 0 Hz take no part: equal models leave no band."""
-    coarse = {"harmonic": {"order": 2, "layers": 1}}
     free = bare.with_changes(housing=housing(mounts=()))
-    judge = _Judge(Assembly(free, kept=8, settings=coarse), 800.0)
+    judge = _Judge(Assembly(free, kept=8, settings=COARSE), 800.0)
     assert judge.found.rigid == 7
     assert judge.departure("harmonic").to_hz == np.inf
     assert judge.departure("rigid/harmonic").mode in judge.names[7:]
 
 
-def test_lumped_shafts_whose_bearings_are_condensed_to_ground_are_refused(assembly):
+def test_lumped_shafts_whose_bearings_are_condensed_to_ground_are_refused(train):
+    assembly = Assembly(train, settings=COARSE)
     with pytest.raises(SolidgearError, match="lumped shaft .* stand in a housing; use one of"):
         assembly.system("lumped")
 

@@ -210,6 +210,7 @@ def test_the_bars_of_a_response_are_those_of_its_modes(train):
     assert respond(Assembly(train), "timoshenko").bars == {}
 
 
+@pytest.mark.long
 def test_variants_do_not_decide_each_others_meshes(file):
     """A shaft has the mesh that its flexibility needs, whichever variant comes first."""
     entry, of_gear = "mesh.stiffness", {"pinion": "euler", "tolerance": 0.05}

@@ -33,6 +33,7 @@ def toothed(assembly, first=None, second=None):
     return assembly.with_train(assembly.train.with_changes(meshes=changed))
 
 
+@pytest.mark.long
 def test_shafts_of_any_names_part_like_pinion_and_gear(run, tmp_path):
     text = (GEOMETRY / "axle_overhung.toml").read_text(encoding="utf-8")
     for side, name in (("pinion", "small"), ("gear", "ring")):

@@ -9,11 +9,12 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.errors import SceneError, SolidgearError
+from solidgear.core.scene.gravity import GRAVITY
 from solidgear.strength.deflection.at_rest import deflect, deflection
 from solidgear.strength.deflection.misalignment import misalignment
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.file.operation import GRAVITY, OperatingPoint
+from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import Operating, at_point
 from solidgear.trains.modes.modes import train_modes
 

@@ -429,6 +429,7 @@ def test_a_planet_alone_drives_as_a_part_of_all_together(written):
     np.testing.assert_allclose(drive.columns(hz)["mesh force stage ring 3 [N]"], own, rtol=1e-9)
 
 
+@pytest.mark.long
 def test_a_reducer_put_together_by_hand_modulates_as_that_of_the_file():
     """Balance of one shaft between bearing laws and a spring for all planets, by `validation`."""
     design = Design(teeth=(15, 25, 17, 34, 85), hand="right", stiffening=206 / 210)

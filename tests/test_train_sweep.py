@@ -61,13 +61,13 @@ def by_hand(folder, file, *edits):
 # ---------------------------------------------------------------------------------- what rows say
 def test_a_row_is_what_the_same_files_edited_by_hand_give(tmp_path):
     vary = [
-        "operation.full.torque=60 N*m,140 N*m",
+        "operation.full.torque=140 N*m",
         "mesh.stiffness=log:2e8 N/m:4e8 N/m:2",
-        "pinion.bearing.A.position=15 mm,16.5 mm",
+        "pinion.bearing.A.position=16.5 mm",
         "gear.segment.right.diameter=50 mm:52 mm:2",
     ]
     found, rows = swept(GEARBOX, vary, tmp_path / "rows.csv", max_frequency=None)
-    assert (found.total, found.refused) == (16, 0)
+    assert (found.total, found.refused) == (4, 0)
     (row,) = (r for r in rows if list(r.values())[1:5] == [140.0, 4e8, 0.0165, 0.05])
     path = by_hand(
         tmp_path,

@@ -135,6 +135,16 @@ def test_a_reduced_beam_has_the_modes_of_the_beam_on_any_springs():
             assert named[Quantity(name)] == pytest.approx(paired[name].frequency_hz, rel=1e-5)
 
 
+def test_a_reduced_beam_keeps_its_modes_beside_a_clamp():
+    """A clamp of 1e22 N/m added to the reduced stiffness leaves nothing of the shaft."""
+    scene = sg.load("geometry/rotor_disc.toml")
+    beam = sg.build(scene, "timoshenko")
+    direct = sg.modes(beam, scene, 4)
+    expected = [m.frequency_hz for m in direct.modes for _ in range(m.multiplicity)]
+    shapes = ReducedBeam(beam, 10).shapes(as_supports(scene))
+    assert shapes.frequency_hz[: len(expected)] == pytest.approx(expected, rel=1e-5)
+
+
 def test_points_inside_fill_every_direction():
     points = spread_points(3, 16)
     for k in range(3):

@@ -90,6 +90,7 @@ def rod_scene():
     return sg.Scene.from_parts([sg.Segment.cylinder("rod", length=LENGTH, diameter=2 * RADIUS)])
 
 
+@pytest.mark.long
 def test_two_near_modes_that_changed_places_are_told_by_their_shapes(tmp_path):
     scene = rod_scene()
     computed = computed_up_to(scene, 3300.0, 0.02)
@@ -113,6 +114,7 @@ def test_two_near_modes_that_changed_places_are_told_by_their_shapes(tmp_path):
     assert all(pair.probability > 0.95 for pair in found.pairs)
 
 
+@pytest.mark.long
 def test_some_resonances_have_shapes_and_others_none(tmp_path):
     """Bending 4 and torsion 1, 1 % apart, in the places of each other: only one has a shape."""
     sets = [mode(k, hertz, bent(n)) for k, hertz, n in ((1, 345.0, 1), (2, 3200.0, 4))]

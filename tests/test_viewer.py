@@ -9,12 +9,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy.spatial import cKDTree
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
-from solidgear.show import viewer
+from solidgear.show import packing, viewer
+from solidgear.show.drawing import colours
 from solidgear.show.packing import mesh_of
 from solidgear.show.turning import picks, turned
 from tests.command import command
@@ -222,3 +224,17 @@ def test_the_command_writes_a_page_also_where_nothing_can_be_drawn(tmp_path, mon
     assert not list(tmp_path.glob("*.png"))
     refused = command(*words)
     assert refused.exit_code == 1 and isinstance(refused.exception, SolidgearError)
+
+
+def test_a_page_has_the_colours_of_pictures():
+    ramp = colours()(np.linspace(0, 1, len(viewer.RAMP)))[:, :3]
+    np.testing.assert_allclose(viewer.RAMP, ramp, atol=5.1e-4)
+
+
+def test_points_that_coincide_are_those_that_a_tree_finds():
+    random = np.random.default_rng(0)
+    points = random.integers(0, 6, (400, 3)) + 1e-9 * random.standard_normal((400, 3))
+    near = {tuple(pair) for pair in cKDTree(points).query_pairs(1e-8, output_type="ndarray")}
+    pairs = (np.transpose(pair) for pair in packing._pairs(points, 1e-8))
+    assert {tuple(pair) for some in pairs for pair in some} == near
+    assert len(near) > 100

@@ -18,7 +18,7 @@ from solidgear.core.plain import plain
 from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import columns as ranges
 from solidgear.show.open_words import remark
-from solidgear.show.options import SceneFile, Shown, relative
+from solidgear.show.options import CaseName, SceneFile, Shown, relative
 from solidgear.show.remarks import bearing_cautions, load, open_ranges
 from solidgear.show.settled import sentences
 from solidgear.show.sheet import Sheet, Terminal, present
@@ -60,13 +60,14 @@ def answer(
             help="Picture of where the error comes from: a file that ends in .png or .svg.",
         ),
     ] = None,
+    case: CaseName = None,
     run: Shown,
 ) -> None:
     if picture is not None:
         from solidgear.show.plot import check_ending  # start-up: for --picture alone
 
         check_ending(picture)  # before anything is solved
-    loaded = load(scene)
+    loaded = load(scene, case)
     for sentence in bearing_cautions(loaded):
         print(caution(sentence), file=sys.stderr)
     units = units_named(run.units)

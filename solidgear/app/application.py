@@ -82,6 +82,10 @@ GROUPS = {
             "Solve a scene or a train with every model and write a report on which to trust, or "
             "compare two designs.",
         ),
+        "sheet": Entry(
+            "datasheet.command",
+            "One page of a shaft or a train to hand on, as HTML or PDF, in English or German.",
+        ),
         "chart": Entry(
             "comparison.race.command",
             "Chart error against cost: every model and element, uniform and graded, with the "

@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
 from solidgear.comparison.models import check_models, nothing
 from solidgear.comparison.models import compare as compared
 from solidgear.comparison.page.sheet import sheet
-from solidgear.comparison.page.write import Pictures
+from solidgear.comparison.page.write import SHEET, Pictures
 from solidgear.core import ELEMENTS, LADDER, SolidgearError, is_train, listed
 from solidgear.core import load as read
 from solidgear.core.machine.start import BEGUN
+from solidgear.datasheet.messages import LanguageChoice
 from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
 from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse, relative
 from solidgear.show.render import Drawing
 from solidgear.show.sheet import Sheet, present
+
+if TYPE_CHECKING:
+    from solidgear.datasheet.result import Datasheet
+
+
+def sheet_of(train: Path, language: str) -> Datasheet:
+    """Return the data sheet of a train, linked to its report."""
+    from solidgear.datasheet.study import sheet as solved  # start-up: for --sheet alone
+
+    return replace(solved(train, language=language), report="report.html")
 
 
 @command
@@ -63,6 +75,13 @@ def compare(
             help="Also chart error against cost, as a section of the report (about four minutes more).",
         ),
     ] = False,
+    sheet_language: Annotated[
+        LanguageChoice | None,
+        typer.Option(
+            "--sheet",
+            help="Also write sheet.html, one page to hand on, in a language: en or de.",
+        ),
+    ] = None,
     pinion: Annotated[
         str | None,
         typer.Option(
@@ -113,6 +132,7 @@ def compare(
         from solidgear.comparison.two.command import compare_two
         from solidgear.trains.options import Pair
 
+        refuse({"--sheet": bool(sheet_language)}, "one file; run solidgear sheet for each of two")
         mix, of_trains["--tol"] = Pair(pinion or MODEL, gear or MODEL, shafts), tol is not None
         compare_two([scene, *more], out, mix, mesh, tol, run, of_one_shaft, of_trains)
         return
@@ -122,7 +142,10 @@ def compare(
         from solidgear.trains.judge.command import compare_train
         from solidgear.trains.options import Reduced
 
+        pages = [] if sheet_language is None else [sheet_of(scene, str(sheet_language))]
         compare_train(scene, out, Reduced(tol=tol), renders, run, of_one_shaft)
+        for page in pages:
+            page.save(out / SHEET, run.units)
         return
     if tol is not None:
         raise SolidgearError(
@@ -147,7 +170,12 @@ def compare(
             complete = comparison.record.complete
             drawn = renders and complete
             comparison.write_report(
-                out, renders=drawn, units=run.units, progress=progress, pictures=pictures
+                out,
+                renders=drawn,
+                units=run.units,
+                progress=progress,
+                pictures=pictures,
+                sheet=str(sheet_language or ""),
             )
             if chart and complete:
                 from solidgear.comparison.race.command import run_chart  # start-up: for --chart
@@ -155,6 +183,8 @@ def compare(
                 run_chart(loaded, out, progress=progress)
         exit_code = 0 if comparison.solutions else 1
         files = [f"Report: {out / 'report.html'}"]
+        if SHEET in (comparison.record.files or ()):
+            files.append(f"Sheet: {out / SHEET}")
         return sheet(comparison.record, files, exit_code if complete else 130)
 
     present(study, run)

@@ -33,7 +33,7 @@ from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
 from solidgear.show import open_words
 from solidgear.show.command import Progress, caution, command
-from solidgear.show.options import Run, SceneFile, Solved, speed_of
+from solidgear.show.options import CaseName, Run, SceneFile, Solved, speed_of
 from solidgear.show.remarks import cautions, load, open_ranges
 from solidgear.show.settled import Judged, bar_lines, source_of_bars
 from solidgear.show.sheet import Sheet, present
@@ -66,6 +66,7 @@ def modes(
             "how far."
         ),
     ] = None,
+    case: CaseName = None,
     run: Run,
 ) -> None:
     turns = speed_of(speed)
@@ -73,7 +74,7 @@ def modes(
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     if n is not None and not 1 <= n <= MOST_MODES:
         raise SolidgearError(f"-n {show(n)}: give 1 to {MOST_MODES} modes")
-    loaded = load(scene)
+    loaded = load(scene, case)
     asked = loaded.ask.modes if n is None else n
     highest_hz = max_frequency or loaded.ask.max_frequency
 

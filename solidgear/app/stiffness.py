@@ -29,7 +29,7 @@ from solidgear.core.solve.condensed import Coupled
 from solidgear.core.solve.statics import condense
 from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import table as open_table
-from solidgear.show.options import SceneFile, Shown, Solved
+from solidgear.show.options import CaseName, SceneFile, Shown, Solved
 from solidgear.show.remarks import cautions, load, open_ranges
 from solidgear.show.settled import Judged, bar_lines, largest_bar, source_of_bars
 from solidgear.show.sheet import Sheet, Terminal, present
@@ -57,9 +57,10 @@ def stiffness(
             help="average, rigid or section for every port; by default as the scene says."
         ),
     ] = None,
+    case: CaseName = None,
     run: Shown,
 ) -> None:
-    loaded = load(scene)
+    loaded = load(scene, case)
     if attachment:
         loaded = loaded.with_attachment(attachment)
     names = _points(loaded, port)

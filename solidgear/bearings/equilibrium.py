@@ -50,13 +50,15 @@ def equilibrium(
     loads: Mapping[str, Sequence[float] | np.ndarray],
     housing: float | Housing | None = None,
     start: Equilibrium | None = None,
+    weight: tuple[np.ndarray, float] | None = None,
 ) -> Equilibrium:
     """Return the equilibrium of a shaft on bearings of any kind, under loads (6,) on ports by name,
     N and N m; torques about y pass on to the drive.
 
     A housing stands between all bearings and ground; a number is a spring along y, N/m. The search
     begins at `start`, an equilibrium of the same shaft under a load that is near; a load that
-    nothing holds is refused.
+    nothing holds is refused. A `weight` (6,) at a place, m, is spread as the mass of the body: alone
+    it strains no free body.
     """
     bearings = tuple(bearings)
     indices = [body.port_index(b.port, b.attachment) for b in bearings]
@@ -70,12 +72,11 @@ def equilibrium(
     if not indices:
         raise SolidgearError("no bearing and no load: there is nothing to settle")
     rows = [6 * index + c for index in indices for c in FIVE]
+    soft = flexibility(body).matrix[np.ix_(rows, rows)]
+    size = np.tile([1.0, 1.0, 1.0, 1 / body.length, 1 / body.length], len(indices))
+    elastic = between(soft, body.rigid_ports[rows], size)
     balance = Balance(
-        between(
-            flexibility(body).matrix[np.ix_(rows, rows)],
-            body.rigid_ports[rows],
-            np.tile([1.0, 1.0, 1.0, 1 / body.length, 1 / body.length], len(indices)),
-        ),
+        elastic,
         bearings,
         common_feet(housing, {k: body.ports[indices[k]].y for k in range(len(bearings))}),
     )
@@ -83,6 +84,12 @@ def equilibrium(
     for name, load in loads.items():
         outside[names.index(name)] += np.asarray(load, float)[list(FIVE)]
     target = balance.elastic.basis.T @ outside.ravel()
+    if weight is not None:
+        carried_rigidly = _carried(weight, body, indices[0], rows, size)
+        target = target + elastic.basis.T @ carried_rigidly
+        # the same loads without the strain that these bring about
+        bent = elastic.basis.T @ (soft @ carried_rigidly / size**2)
+        target = target - elastic.stiffness * bent
     try:
         settled = balance.settle(target, None if start is None else start._state)
     except NothingHolds as error:
@@ -105,3 +112,18 @@ def equilibrium(
         iterations=settled.iterations,
         _state=settled.motion,
     )
+
+
+def _carried(
+    weight: tuple[np.ndarray, float], body: Body, index: int, rows: list[int], size: np.ndarray
+) -> np.ndarray:
+    """Return loads (5 n,) on places that do the work of a weight on every rigid motion, by a port of
+    the body and the motion of each place that counts as one metre.
+    """
+    six, y = weight
+    arm = y - body.ports[index].y
+    at_port = six + arm * np.array([0.0, 0.0, 0.0, six[2], 0.0, -six[0]])
+    work = body.rigid_ports[6 * index : 6 * index + 6].T @ at_port
+    scaled = body.rigid_ports[rows] / size[:, None]
+    pushed, *_ = np.linalg.lstsq(scaled.T, work, rcond=1e-9)
+    return pushed / size

@@ -18,7 +18,7 @@ from solidgear.bearings.catalogue import Preload, catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.core import Bearing, Scene, SceneError, SolidgearError, listed
-from solidgear.core.scene.acting import station_loads
+from solidgear.core.scene.acting import own_weight, station_loads, weights_of_masses
 
 if TYPE_CHECKING:
     from solidgear.core import Body
@@ -95,9 +95,15 @@ def solved(
     settled = None
     if body is not None and wants_equilibrium(scene):
         loads = {name: choice.load * six for name, six in station_loads(scene).items()}
+        falling = None
+        if scene.weight is not None:
+            falling = own_weight(scene)
+            for name, six in weights_of_masses(scene).items():
+                loads[name] = loads.get(name, np.zeros(6)) + six
         around = scene.housing or scene.housing_axial
+        on_bearings = mounted(scene, bearings_made)
         try:
-            settled = equilibrium(body, mounted(scene, bearings_made), loads, around, start)
+            settled = equilibrium(body, on_bearings, loads, around, start, falling)
         except SolidgearError as error:
             raise SolidgearError(f"{error}{_unused_ribs(scene)}") from None
     motion, tangent = {}, {}

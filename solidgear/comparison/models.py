@@ -84,6 +84,7 @@ class Comparison(Displayed):
         units: str = "engineering",
         progress: Progress = lambda _: None,
         pictures: Pictures | None = None,
+        sheet: str = "",
     ) -> Path:
         """Write results.json, report.html, mode_*.png and files for other programs into a folder.
 
@@ -99,6 +100,8 @@ class Comparison(Displayed):
             Called with a sentence at every step.
         pictures : Pictures, optional
             Those that were begun while models were being solved.
+        sheet : {'', 'en', 'de'}
+            Language of ``sheet.html``, one page to hand on; without one there is none.
 
         Returns
         -------
@@ -111,6 +114,11 @@ class Comparison(Displayed):
             If the folder cannot be written, or units are unknown.
         """
         self.record.shown_in = units_named(units).name
+        page = None
+        if sheet:
+            from solidgear.datasheet.recorded import recorded_sheet  # start-up: for a sheet alone
+
+            page = functools.partial(recorded_sheet, self.record, self.scene, sheet)
         return write_all(
             self.record,
             self.solutions,
@@ -119,6 +127,7 @@ class Comparison(Displayed):
             began=self.began,
             progress=progress,
             pictures=pictures,
+            sheet=page,
         )
 
 

@@ -22,6 +22,7 @@ TWO = Printed(
         "tolerance": float,
         "highest_hz": float,
         "numbers": dict[str, Any],
+        "under_loads": dict[str, Any],
         "asked": dict[str, Any],
         "open": dict[str, Any],
         "paired": str,

@@ -25,6 +25,9 @@ SAME = 1e-9
 ROUNDING = 1e-15
 #: eigenvalue, over the diagonal, below which a direction hangs on the last digits of the entries
 LOST = 1e-10
+#: a spring holds what moves with it where it is so much stiffer, of the largest eigenvalue beside it: no
+#: frequency changes by more than the inverse, and a sum of both would leave rounding of the softer one
+RIGID = 1e7
 
 
 def root_of(matrix: np.ndarray) -> np.ndarray:
@@ -54,6 +57,39 @@ def root_of(matrix: np.ndarray) -> np.ndarray:
     out = np.zeros((len(d), len(columns)))
     out[order] = d[order, None] * np.array(columns).reshape(len(columns), len(d)).T
     return out
+
+
+def modes_on_springs(
+    stiffness: np.ndarray, mass: np.ndarray, columns: np.ndarray
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return squares of angular frequencies (k,), ascending, and shapes (n, k) of a small system that
+    springs of any stiffness tie to the ground.
+
+    Parameters
+    ----------
+    stiffness, mass : (n, n) ndarray
+        Of the system without the springs; the mass positive definite.
+    columns : (n, r) ndarray
+        Root C of the springs, ``C C'`` their stiffness. Those that hold their motion rigidly leave
+        shapes out, one each.
+
+    Examples
+    --------
+    Two unit masses on a unit spring, the second one clamped:
+
+    >>> spring = np.array([[1.0, -1.0], [-1.0, 1.0]])
+    >>> square, shapes = modes_on_springs(spring, np.eye(2), np.array([[0.0], [1e11]]))
+    >>> square.round(12), abs(shapes.T).round(12)
+    (array([1.]), array([[1., 0.]]))
+    """
+    light = sla.solve_triangular(np.linalg.cholesky(mass), columns, lower=True)
+    sizes = np.einsum("nr,nr->r", light, light)
+    largest = float(sla.eigh(stiffness, mass, eigvals_only=True)[-1])
+    rigid = sizes > RIGID * largest
+    free = _spanned(columns[:, rigid]) if rigid.any() else np.eye(len(mass))
+    soft = free.T @ columns[:, ~rigid]
+    square, mix = sla.eigh(free.T @ stiffness @ free + soft @ soft.T, free.T @ mass @ free)
+    return square, free @ mix
 
 
 def in_series(

@@ -35,6 +35,7 @@ from solidgear.core import (
 from solidgear.core.errors import names_in
 from solidgear.core.loading import scene_of
 from solidgear.core.scene.paths import Tables, replace_entry
+from solidgear.core.springs import modes_on_springs
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
 from solidgear.measured.data import Measured, load_measured
@@ -568,9 +569,8 @@ class Sprung:
         """Return frequencies (modes,) of the same modes on other springs, Hz, and motions (shapes,
         6 m) of the ports in each of their shapes, normalised to the mass.
         """
-        stiff = self.stiffness + self.ports.T @ supports.stiffness @ self.ports
-        heavy = np.eye(len(stiff)) + self.ports.T @ supports.masses @ self.ports
-        value, shapes = sla.eigh(stiff, heavy)
+        heavy = np.eye(len(self.stiffness)) + self.ports.T @ supports.masses @ self.ports
+        value, shapes = modes_on_springs(self.stiffness, heavy, self.ports.T @ supports.root)
         overlap = (self.references @ heavy @ shapes) ** 2
         rows, columns = linear_sum_assignment(-overlap)
         square = np.zeros(len(self.hertz))

@@ -34,7 +34,7 @@ LOCK = ".solidgear.lock"
 LOCKED_BYTE = 2**30
 #: what is ever listed, and so ever removed: a damaged list can name nothing else
 OWN = re.compile(
-    r"(report\.html|(mode|error)_\w+\.png|modes\.html|system_mode_\d+\.png"
+    r"((?:report|sheet)\.html|(mode|error)_\w+\.png|modes\.html|system_mode_\d+\.png"
     r"|(response|orders|shares)\.(csv|png|svg|html)|response_[ab]\.csv"
     rf"|{'|'.join(output.pattern for output in OUTPUTS)})"
 )

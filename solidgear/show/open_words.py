@@ -27,7 +27,11 @@ RESOLVED = 0.05
 
 def interval(range_: IntervalRecord | None) -> str:
     """Return a range in per cent: ``-35 / +10 %``, or ``± 1.5 %`` for a symmetric one."""
-    low, high = (range_.low or 0.0, range_.high or 0.0) if range_ else (0.0, 0.0)
+    return between(range_.low or 0.0, range_.high or 0.0) if range_ else "0"
+
+
+def between(low: float, high: float) -> str:
+    """Return a range from its ends, relative, as :func:`interval`."""
     if max(-low, high) < NOTHING:
         return "0"
     if abs(high + low) < 0.02 * (high - low):

@@ -41,6 +41,12 @@ SceneFile = Annotated[
         help="Scene file (TOML), such as geometry/pinion_overhung.toml; - for standard input."
     ),
 ]
+CaseName = Annotated[
+    str | None,
+    typer.Option(
+        "--case", help="Case of the loads of a shaft, by name or number; by default the first."
+    ),
+]
 if TYPE_CHECKING:
     Choice = str
     AutoChoice = str

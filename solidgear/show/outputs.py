@@ -91,17 +91,26 @@ def _volume(body: Body, mesh: Volume, shapes):
     return mesh.nodes.T, [(element.cell, mesh.cells[order].T)], data
 
 
+#: places of the nodes of VTK's cells in their unit cube or tetrahedron, x y z in halves
+VTK_NODES = {
+    "vtkQuadraticTetra": "000 200 020 002 100 110 010 001 101 011",
+    "vtkTriQuadraticHexahedron": (
+        "000 200 220 020 002 202 222 022 100 210 120 010 102 212 122 012 001 201 221 021 "
+        "011 211 101 121 110 112 111"
+    ),
+}
+
+
 def node_order(doflocs: np.ndarray, vtk_name: str) -> np.ndarray:
     """Return the local nodes of an element in VTK's order, found by their reference coordinates,
     (nb, 3).
 
     Both sides use the unit cube or the unit tetrahedron; meshio keeps VTK's order for these types.
-    `vtk_name` is the class of the VTK cell, which knows its own.
+    `vtk_name` is the class of the VTK cell. Those with less nodes leave out the last ones.
     """
-    from vtkmodules import vtkCommonDataModel  # needs no OpenGL
-
-    cell = getattr(vtkCommonDataModel, vtk_name)()
-    coordinates = np.reshape(cell.GetParametricCoords(), (-1, 3))[: cell.GetNumberOfPoints()]
+    shape = "vtkQuadraticTetra" if "Tetra" in vtk_name else "vtkTriQuadraticHexahedron"
+    places = VTK_NODES[shape].split()[: len(doflocs)]
+    coordinates = np.array([[int(half) / 2 for half in place] for place in places])
     distance = np.abs(coordinates[:, None] - np.asarray(doflocs)[None]).max(axis=2)
     order = distance.argmin(axis=1)
     if distance.min(axis=1).max() > 1e-12 or len(set(order)) != len(doflocs):

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import base64
 import zlib
+from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -20,6 +21,8 @@ if TYPE_CHECKING:
 
 #: points nearer than this share of the length are one
 SAME = 1e-8
+#: a direction that lies along no edge or symmetry of a shaft
+ODD = np.array([0.4379, 0.7411, 0.5089])
 #: edges at which the surface turns by more than this stay sharp, and are drawn
 CREASE = np.cos(np.radians(32))
 #: sectors about the axis in which points are numbered; with 48 or 192 most pages are larger
@@ -54,19 +57,35 @@ def mesh_of(surface: Surface) -> Mesh:
 
 def _triangles(surface: Surface) -> np.ndarray:
     """Return triangles of a surface between points of which none coincide."""
-    from scipy.spatial import cKDTree
-
     points = surface.points
-    near = SAME * np.ptp(points, axis=0).max()
-    first, second = cKDTree(points).query_pairs(near, output_type="ndarray").T
     number = np.arange(len(points))
-    np.minimum.at(number, second, first)
+    for first, second in _pairs(points, SAME * np.ptp(points, axis=0).max()):
+        np.minimum.at(number, second, first)
     triangles = number[np.concatenate([_halved(points, surface.faces), surface.triangles])]
     corners = np.sort(triangles, axis=1)
     flat = (np.diff(corners, axis=1) == 0).any(axis=1)
     # Where two bodies are welded face to face, neither face is of the surface.
     _, back, count = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
     return triangles[~flat & (count[back.ravel()] == 1)]
+
+
+def _pairs(points: np.ndarray, near: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
+    """Yield the numbers of points no further apart than a distance, the lower ones and the higher
+    ones: of all that lie as near along an odd direction, which are few.
+
+    A tree of scipy.spatial takes longer to import than pages take to draw.
+    """
+    along = points @ ODD
+    order = np.argsort(along, kind="stable")
+    along = along[order]
+    for step in range(1, len(points)):
+        candidates = np.flatnonzero(along[step:] - along[:-step] <= near)
+        if not len(candidates):
+            return
+        pairs = np.sort([order[candidates], order[candidates + step]], axis=0)
+        apart = np.linalg.norm(points[pairs[0]] - points[pairs[1]], axis=1)
+        first, second = pairs[:, apart <= near]
+        yield first, second
 
 
 def _halved(points: np.ndarray, quads: np.ndarray) -> np.ndarray:

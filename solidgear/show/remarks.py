@@ -6,13 +6,18 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from solidgear.core import Body, OpenNumbers, Scene, Source, addition
+from solidgear.core import Body, OpenNumbers, Scene, Source, addition, explained
 from solidgear.core import load as read
 
 
-def load(source: Source) -> Scene:
-    """Read a scene and print doubts about the file of its part."""
+def load(source: Source, case: str | None = None) -> Scene:
+    """Read a scene, whose bearings settle under a case of its loads, by default the first, and print
+    doubts about the file of its part.
+    """
     scene = read(source)
+    if case is not None:
+        with explained(source):
+            scene = scene.with_case(case).settled
     for sentence in scene.body.doubts(scene.material) if scene.body is not None else ():
         print(f"caution: {sentence}", file=sys.stderr)
     return scene

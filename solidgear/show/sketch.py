@@ -33,6 +33,7 @@ class Board:
     inch: float
     radial: float
     top: float  #: largest radius
+    silent: bool = False  #: whether words are left out, for drawings with other ones
 
     def x(self, y: float) -> float:
         """Return the place of a position along the shaft, m."""
@@ -125,6 +126,8 @@ class Board:
         style: str | None = None,
     ) -> None:
         """Draw words, which cover what is around their letters."""
+        if self.silent:
+            return
         across, down = self.place(x, height)
         around: dict[str, Any] = {"stroke": "#ffffff", "stroke_width": 2.4, "paint_order": "stroke"}
         around |= {"stroke_linejoin": "round", "stroke_opacity": cover}
@@ -227,7 +230,7 @@ class Sketch(Picture):
         pen = Pen(name, SIZE)
         board = Board(pen, above + margin / POINTS, before, inch, inch * enlarged, top)
         for s in segments:
-            _segment(board, s)
+            draw_segment(board, s)
         beyond = [before - 0.3, before + length * inch + 0.3]
         board.line(beyond, [0, 0], INK, 0.8, 4, CHAINED)
         for blend in scene.get("blends") or []:
@@ -340,7 +343,7 @@ def _chain(segments, place) -> list[tuple]:
     return _staggered(dimensions)
 
 
-def _surface(segments, lo: float, hi: float) -> list[tuple[float, float]]:
+def surface_of(segments, lo: float, hi: float) -> list[tuple[float, float]]:
     """Return (y, outer radius) along the shaft from `lo` to `hi`, steps included."""
     points = []
     for s in segments:
@@ -351,7 +354,7 @@ def _surface(segments, lo: float, hi: float) -> list[tuple[float, float]]:
     return points
 
 
-def _segment(board: Board, s: Mapping) -> None:
+def draw_segment(board: Board, s: Mapping) -> None:
     """Draw a segment, cut above and from outside below, with its diameters."""
     x0, x1 = board.x(s["y0"]), board.x(s["y1"])
     o0, o1, i0, i1 = (board.radial * s[k] for k in ("outer0", "outer1", "inner0", "inner1"))
@@ -384,7 +387,7 @@ def _diameter(board: Board, s: Mapping, x0: float, x1: float, room: float) -> No
 
 def _seat(board: Board, s: Mapping, segments, side: int, colour: str, width: float) -> None:
     """Draw the surface that carries a bearing or lumped point, on one side of the axis."""
-    points = _surface(segments, s["lo"], s["hi"])
+    points = surface_of(segments, s["lo"], s["hi"])
     x, r = [board.x(y) for y, _ in points], [side * board.radial * r for _, r in points]
     board.line(x, r, colour, width, flat=True)
 
@@ -399,7 +402,7 @@ SPRING = [
 
 def _bearing(board: Board, b: Mapping, segments) -> None:
     """Draw the seat of a bearing, and springs from it to the ground."""
-    middle = _surface(segments, b["y"] - 1e-6, b["y"] + 1e-6)
+    middle = surface_of(segments, b["y"] - 1e-6, b["y"] + 1e-6)
     radius = board.radial * (middle[0][1] if middle else 0.0)
     x, ground = board.x(b["y"]), board.top + 0.38
     rise = ground - radius
@@ -420,7 +423,7 @@ def _port(board: Board, port: Mapping, segments) -> None:
         _seat(board, port, segments, side, SPAN, 4)
         for k in range(5):
             y = port["lo"] + (port["hi"] - port["lo"]) * (0.04 + 0.92 * k / 4)
-            spot = _surface(segments, y - 1e-6, y + 1e-6)
+            spot = surface_of(segments, y - 1e-6, y + 1e-6)
             if spot:
                 end = side * board.radial * spot[0][1]
                 board.line([x, board.x(y)], [0, end], SPAN, 0.5, 4, DOTTED)

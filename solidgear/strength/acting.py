@@ -14,7 +14,7 @@ from solidgear.core import SceneError, SolidgearError, Source, is_train, name_of
 from solidgear.core.loading import as_written
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group
-from solidgear.show.options import refuse
+from solidgear.show.options import CaseName, refuse
 from solidgear.strength.load import AT_REST, driven
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
@@ -70,12 +70,7 @@ class Acting(Group):
             help='Load on a shaft in place of those in its file: "x=2 kN, z=-500 N" at the port.',
         ),
     ] = None
-    case: Annotated[
-        str | None,
-        typer.Option(
-            "--case", help="Case of the loads of a shaft, by name or number; the first by default."
-        ),
-    ] = None
+    case: CaseName = None
     drive: Annotated[
         Torques,
         typer.Option(

@@ -2,14 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from solidgear.core import DOF_NAMES, Scene, SolidgearError, nearest
 from solidgear.core.scene import ShaftLoad
-from solidgear.core.scene.acting import ROUNDING, ActingLoad, acting_loads, carriers, loads_of
+from solidgear.core.scene.acting import (
+    ROUNDING,
+    ActingLoad,
+    acting_loads,
+    carriers,
+    loads_of,
+    own_weight,
+    weights_of_masses,
+)
 from solidgear.core.scene.load_rules import ONLY, named_case
 from solidgear.show.units import Units
 from solidgear.trains.assembly.components import FORCE_UNITS
@@ -18,6 +26,8 @@ from solidgear.trains.file.train import ALONE, Train
 
 #: a shaft alone in the first case of its loads
 AT_REST = ShaftCase()
+#: name of the weight of a shaft
+WEIGHT = "weight"
 #: loads that a sentence names one by one
 NAMED = 3
 
@@ -42,12 +52,12 @@ class LoadsAlone:
     def words(self, units: Units) -> str:
         """Return the loads in words, such as ``Under z 2000 N at pinion``."""
         case = f"In the case {self.case}, under" if self.case else "Under"
-        shown = [load for load in self.acting if load.name != ROUNDING]
-        if len(shown) > NAMED:
+        named = [load for load in self.acting if load.name != ROUNDING]
+        if len(named) > NAMED:
             together = _components(self.load, units)
-            return f"{case} {len(shown)} loads, together {together} at {self.port}"
+            return f"{case} {len(named)} loads, together {together} at {self.port}"
         return f"{case} " + ", and ".join(
-            f"{_components(load.six, units)} at {load.station}" for load in shown
+            f"{_components(load.six, units)} at {load.station}" for load in named
         )
 
     @property
@@ -80,7 +90,7 @@ def loads_alone(train: Train, point: OperatingPoint = AT_REST) -> LoadsAlone | N
             "`load`"
         )
     case = named_case(scene.cases, point.name or None)
-    acting = acting_loads(scene, case)
+    acting = acting_loads(scene, case) + tuple(_weights(scene))
     names = {load.name for load in acting}
     assumed = [
         sentence for load in loads_of(scene) if load.name in names for sentence in load.assumed
@@ -89,16 +99,27 @@ def loads_alone(train: Train, point: OperatingPoint = AT_REST) -> LoadsAlone | N
     return LoadsAlone(scene.port.name, scene.port.y, name, acting, tuple(assumed))
 
 
+def _weights(scene: Scene) -> Iterator[ActingLoad]:
+    """Yield the weight of a shaft, and those of the masses on it."""
+    if scene.weight is None:
+        return
+    six, y = own_weight(scene)
+    yield ActingLoad(WEIGHT, "its centre", y, six)
+    places = {station.name: station.y for station in scene.stations}
+    for name, load in weights_of_masses(scene).items():
+        yield ActingLoad(f"weight on {name}", name, places[name], load)
+
+
 def driven(scene: Scene, drive: Mapping[str, float]) -> Scene:
     """Return a scene with torques, N m, that enter at stations and leave where the file says, by
     default at the main lumped point.
     """
     leaves = scene.torque_at or scene.port.name
     for name in drive:
-        if name not in (known := carriers(scene)):
+        if name not in (places := carriers(scene)):
             raise SolidgearError(
-                f'`drive` "{name}": the shaft has no such place{nearest(name, known)}; it has '
-                f"{', '.join(known)}"
+                f'`drive` "{name}": the shaft has no such place{nearest(name, places)}; it has '
+                f"{', '.join(places)}"
             )
         if name == leaves:
             raise SolidgearError(

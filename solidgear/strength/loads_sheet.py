@@ -33,7 +33,7 @@ def loads_table(loads: LoadsAlone, statics: Statics, units: Units = ENGINEERING)
     rows = [[*row[:3], *six] for row, six in zip(rows, _without_rounding(values))]
     note = (
         "Components on the axis; thy is the torque. Loads and bearings balance to "
-        f"{statics.left:.1g} of the sum of their sizes."
+        f"{statics.imbalance:.1g} of the sum of their sizes."
     )
     if loads.assumed:
         note += f" {'; '.join(loads.assumed)}."

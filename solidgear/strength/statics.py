@@ -32,7 +32,7 @@ class Statics:
     reactions: np.ndarray  #: (6,) resultant of all bearings on the shaft, N and N m
     #: largest component of their sum, over the sum of the sizes of all forces; moments count by the
     #: length of the shaft
-    left: float
+    imbalance: float
     torque: tuple[Stretch, ...]  #: along the shaft
 
 
@@ -51,7 +51,7 @@ def statics(scene: Scene, loads: LoadsAlone, carried: Mapping[str, np.ndarray]) 
     ... )
     >>> held = np.array([100.0, 0.0, 0.0, 0.0, 5.0, -9.0])
     >>> found = statics(scene, loads_alone(sg.Train.of(scene)), {"A": held})
-    >>> found.left, [(round(s.start, 3), round(s.end, 3), s.torque) for s in found.torque]
+    >>> found.imbalance, [(round(s.start, 3), round(s.end, 3), s.torque) for s in found.torque]
     (0.0, [(0.1, 0.19, 5.0)])
     """
     places = {station.name: station.y for station in scene.stations}
@@ -63,11 +63,11 @@ def statics(scene: Scene, loads: LoadsAlone, carried: Mapping[str, np.ndarray]) 
     forces, moments = sum(moved, np.zeros(6)).reshape(2, 3).sum(axis=1)
     # moments count by the length of the shaft
     size = max(forces, moments / scene.length) * np.repeat([1.0, scene.length], 3)
-    left = np.abs(acting + reacting)
+    remainder = np.abs(acting + reacting)
     return Statics(
         acting,
         reacting,
-        float((left / size).max()) if size.any() else 0.0,
+        float((remainder / size).max()) if size.any() else 0.0,
         tuple(_torque_line([(y, float(six[4])) for y, six in all_rows])),
     )
 

@@ -57,6 +57,7 @@ FEATURES = (
     "variants",
     "measured",
     "backlash",
+    "datasheet",
     "comparison",
     "app",
 )

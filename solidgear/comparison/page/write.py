@@ -25,6 +25,8 @@ from solidgear.show.viewer import TURNED, Turning
 from solidgear.show.where_surface import where_surface
 
 R = TypeVar("R")
+#: one page to hand on, beside the report
+SHEET = "sheet.html"
 
 
 class Pictures:
@@ -59,13 +61,14 @@ def write_all(
     began: float,
     progress: Callable[[str], None],
     pictures: Pictures | None = None,
+    sheet: Callable[[Path], object] | None = None,
 ) -> Path:
     """Write results.json, renders, files for other programs and the report; see
     :meth:`solidgear.comparison.models.Comparison.write_report`.
 
     The run has taken what has passed since it `began`, by ``time.perf_counter``.
     The record gains ``files``, what was written beside it, and ``left_out``, a sentence for what
-    could not be drawn or written. After an interrupt there are numbers and a report, and no shapes:
+    could not be drawn or written; `sheet` writes one page to hand on into a file. After an interrupt there are numbers and a report, and no shapes:
     who has pressed Ctrl-C does not want to wait for them.
     """
     record.left_out = []
@@ -80,6 +83,7 @@ def write_all(
             *(f"mode_{m}.png" for m in shapes if renders),
             *(f"error_{m}.png" for m in shapes if renders and m == _shaded(record)),
             *([TURNED] if shapes and renders else []),
+            *([SHEET] if shapes and sheet else []),
         ]
         write_json(folder / "results.json", record.as_dict())
         if renders and shapes:
@@ -108,6 +112,9 @@ def write_all(
         if renders and shapes:
             write = partial(_write_turned, record, shapes, folder)
             _try(record, "viewer of mode shapes", write)
+        if sheet and shapes:
+            progress("sheet")
+            _try(record, "sheet", partial(sheet, folder / SHEET))
         record.files = [
             name for name in record.files if name == "report.html" or (folder / name).exists()
         ]

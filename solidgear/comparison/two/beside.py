@@ -31,8 +31,8 @@ NAMED, WIDTH = 3, 30
 LONG, SHORT = 60, 34
 #: keys of results.json in their order; either kind has some of its own
 KEYS = (
-    "kind shafts trains models mesh tolerance highest_hz differences sentences numbers asked open "
-    "paired modes alone peaks largest responses misalignment at_rest cautions unpublished "
+    "kind shafts trains models mesh tolerance highest_hz differences sentences numbers under_loads "
+    "asked open paired modes alone peaks largest responses misalignment at_rest cautions unpublished "
     "unpublished_lines environment seconds_total"
 ).split()
 

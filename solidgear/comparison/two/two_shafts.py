@@ -18,6 +18,7 @@ import numpy as np
 from solidgear.comparison.two import beside
 from solidgear.comparison.two.beside import Beside, NumberChange
 from solidgear.comparison.two.differences import Difference, scene_differences
+from solidgear.comparison.two.loaded import BY, loaded_changes
 from solidgear.core import (
     LADDER,
     QUANTITIES,
@@ -84,6 +85,8 @@ class TwoShafts(Beside[OneShaft, BarredMode]):
         Entries in which their files, or fields, differ.
     changes : tuple of NumberChange
         Mass, entries of C and K at the lumped points, first frequencies.
+    loaded : tuple of NumberChange
+        Motions and bearing loads under the loads of both; empty where one has none.
     modes : tuple of ModePair
         By frequency.
     pairing : str
@@ -96,6 +99,8 @@ class TwoShafts(Beside[OneShaft, BarredMode]):
     tolerance: float  #: relative, that every error bar was brought to
     alone: dict[str, tuple[str, ...]]  #: names of numbers that one shaft alone has, by its letter
     open: tuple[OpenNumbers, OpenNumbers]  #: ranges that the input data of each leave open
+    loaded: tuple[NumberChange, ...] = ()
+    why_unloaded: str = ""  #: reason why loads of both bring no numbers, a sentence
 
     @property
     def asks(self) -> bool:
@@ -120,6 +125,7 @@ class TwoShafts(Beside[OneShaft, BarredMode]):
             *_asked(self, units),
             beside.inputs(self.inputs),
             *_numbers(self, units),
+            *_under_loads(self, units),
             *beside.modes(self.modes, "among the modes solved of the other"),
             *_alone(self),
             *_solved(self),
@@ -130,6 +136,7 @@ class TwoShafts(Beside[OneShaft, BarredMode]):
         printed = [
             beside.input_table(self, beside.SHORT),
             numbers_table(self, units),
+            *loaded_tables(self, units),
             beside.mode_table(self),
         ]
         if self.asks:
@@ -155,7 +162,11 @@ class TwoShafts(Beside[OneShaft, BarredMode]):
             "asked": {number.name: number.better or None for number in self.asked},
             "open": dict(zip("ab", self.open)),
             "alone": {letter.lower(): names for letter, names in self.alone.items()},
-        }
+        } | (
+            {"under_loads": {number.name: _number(number) for number in self.loaded}}
+            if self.loaded
+            else {}
+        )
 
 
 def _number(number: NumberChange) -> dict[str, Any]:
@@ -206,6 +217,8 @@ def two_shafts(
         shafts[-1].settled.body.cache.clear()
     a, b = shafts
     pairs, pairing = _paired(a, b)
+    progress("under the loads")
+    loaded, why_unloaded = loaded_changes(scenes)
     progress("what the data leave open")
     return TwoShafts(
         a=a,
@@ -220,6 +233,8 @@ def two_shafts(
             for shaft, values in ((a, b.values), (b, a.values))
         },
         open=(open_numbers(first), open_numbers(second)),
+        loaded=loaded,
+        why_unloaded=why_unloaded,
         seconds=perf_counter() - start,
     )
 
@@ -333,6 +348,16 @@ def _numbers(shafts: TwoShafts, units: Units) -> Iterator[str]:
     yield f"Mass of the shaft: {_change_text(shafts['mass'], units)}."
 
 
+def _under_loads(shafts: TwoShafts, units: Units) -> Iterator[str]:
+    """Yield the changes of deflections under the loads, or the reason why there are none."""
+    if shafts.why_unloaded:
+        yield shafts.why_unloaded
+    moved = [number for number in shafts.loaded if number.unit == "m moved"]
+    if moved:
+        words = "; ".join(_change_text(number, units) for number in moved)
+        yield f"Under the loads of each: {words}."
+
+
 def _size(number: NumberChange) -> float:
     return abs(number.relative or 0.0)
 
@@ -397,7 +422,9 @@ def _sections(pair: TwoShafts, units: Units) -> list[Section]:
         Section("asked", title, tables=[asked_table(pair, units)]),
         beside.input_section(pair),
         Section("shafts", "Both shafts", "Both to one scale.", drawings=drawings),
-        Section("numbers", "Numbers", tables=[numbers_table(pair, units)]),
+        Section(
+            "numbers", "Numbers", tables=[numbers_table(pair, units), *loaded_tables(pair, units)]
+        ),
         Section("modes", "Modes", "", shapes, [beside.mode_table(pair)], filed=()),
         Section("run", "Run", tables=[*solved, machine]),
     ]
@@ -439,6 +466,18 @@ def numbers_table(pair: TwoShafts, units: Units = ENGINEERING) -> Table:
         "is not agreement. The mass is the shaft's alone, and exact for a round one."
     )
     return Table("Numbers", columns, pair.changes, note, style="ruled")
+
+
+def loaded_tables(pair: TwoShafts, units: Units = ENGINEERING) -> list[Table]:
+    """Return numbers of both under their loads; none where one has no load."""
+    if not pair.loaded:
+        return []
+    verdict = Column("", lambda n: n.verdict if n.change.band else None, kind=WORD, name="verdict")
+    note = (
+        f"Sizes across the shaft at lumped points, and of bearing loads, {BY}, in the first case of "
+        "each. Error bars are for the mesh; loads of bearings have none."
+    )
+    return [Table("Under the loads", [*_columns(units), verdict], pair.loaded, note, style="ruled")]
 
 
 def _columns(units: Units) -> list[Column]:

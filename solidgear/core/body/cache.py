@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from typing import Any, TypeVar
+from collections.abc import Callable, Hashable
+from typing import Any, Generic, TypeVar
 
 T = TypeVar("T")
 
@@ -43,3 +43,27 @@ class Cache:
     def clear(self) -> None:
         """Forget everything: factors are the largest things that a body holds."""
         self._things.clear()
+
+
+class LastTwo(Generic[T]):
+    """Things of a body on the last two sets of springs.
+
+    Examples
+    --------
+    >>> on_springs = LastTwo[str]()
+    >>> [on_springs.on(key, lambda: key.upper()) for key in "abac"]
+    ['A', 'B', 'A', 'C']
+    >>> on_springs.on("c", lambda: "made again"), on_springs.on("a", lambda: "made again")
+    ('C', 'made again')
+    """
+
+    def __init__(self) -> None:
+        self._things: dict[Hashable, T] = {}
+
+    def on(self, key: Hashable, make: Callable[[], T]) -> T:
+        """Return the thing on some springs, made where these are new, in the place of the oldest."""
+        if key not in self._things:
+            while len(self._things) >= 2:
+                del self._things[next(iter(self._things))]
+            self._things[key] = make()
+        return self._things[key]

@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse as sp
 from scipy.sparse.csgraph import connected_components
 
+from solidgear.core.body.cache import LastTwo
 from solidgear.core.body.model import Body
 from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import DOF_NAMES
@@ -167,6 +168,12 @@ class Supports:
             return replace(self, ports=tuple(map(name, carriers)))
         return replace(self, attachments=tuple(s.attachment for s in carriers))
 
+    @cached_property
+    def key(self) -> tuple:
+        """Ports, attachments, springs and masses, by which they are told from others."""
+        matrices = (self.stiffness, self.masses)
+        return self.ports, self.attachments, *(matrix.tobytes() for matrix in matrices)
+
     def unresisted(self, body: Body) -> np.ndarray:
         """Rigid motions about the origin that no spring resists.
 
@@ -185,6 +192,10 @@ class Supports:
         SolidgearError
             If the body lacks a port.
         """
+        return body.cache.get(_Unresisted, _Unresisted).on(self.key, lambda: self._motions(body))
+
+    def _motions(self, body: Body) -> np.ndarray:
+        """Compute the motions of :meth:`unresisted`."""
         size = np.array([1.0, 1.0, 1.0, 1 / body.length, 1 / body.length, 1 / body.length])
         if not self.ports:
             return np.eye(6) * size
@@ -195,6 +206,10 @@ class Supports:
         _, s, vt = np.linalg.svd(a)
         rank = int((s > 1e-9).sum())
         return size[:, None] * separated(vt[rank:].T)
+
+
+class _Unresisted(LastTwo[np.ndarray]):
+    """Rigid motions of a body that no spring resists."""
 
 
 def separated(basis: np.ndarray) -> np.ndarray:

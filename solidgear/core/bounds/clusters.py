@@ -23,6 +23,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from solidgear.core.solve.neighbours import best_assignment
+
 #: gap between eigenvalues, relative to the upper one, below which modes are near each other
 BESIDE = 0.05
 #: gap that is solved on for: a bar is no wider than three times what the energy says
@@ -93,11 +95,9 @@ def _by_family(ends: np.ndarray, shapes: np.ndarray, families: Sequence[str]) ->
     """
     if len(set(families)) == 1:
         return ends
-    from scipy.optimize import linear_sum_assignment  # slow to import, and seldom needed
-
     weight = shapes**2 / (shapes**2).sum(axis=0)
     same = np.array([[a == b for b in families] for a in families], float)
-    modes, places = linear_sum_assignment(-(same @ weight))
+    modes, places = best_assignment(same @ weight)
     out = np.empty(len(ends))
     out[modes] = ends[places]
     for family in set(families):

@@ -36,6 +36,8 @@ if TYPE_CHECKING:
 
 #: shapes of a mode, by blocks and the arrays that hold them
 Same = tuple[tuple[int, int], ...]
+#: modes of a body, perhaps in other supports, and the names of those whose bounds will be computed
+Later = tuple[ModeSet, Sequence[str]]
 #: an order leaves at most this share of the remaining error
 SLOWEST = 0.8
 #: energy of displacements, in that of a mode, that its error does not rest on
@@ -124,15 +126,15 @@ def harmonic_bounds(
     modes: ModeSet | None = None,
     wanted: Sequence[str] = (),
     safety: float = 1.0,
-    later: ModeSet | None = None,
+    later: Sequence[Later] = (),
 ) -> HarmonicBounds:
     """Compute bounds of the flexibility and of some modes of a harmonic body.
 
     `scene` is the one that the body was meshed from, chamfers as cones
     (:func:`solidgear.core.scene.coned.coned`). `modes` are modes of the body, of every group
     up to one beyond the cluster of each of the `wanted` names; `safety` multiplies the bounds of
-    modes. `later` are modes of the body in other supports, whose bounds will be computed next: local
-    problems that they share with these are not solved again.
+    modes. `later` are modes whose bounds will be computed next: local problems that they share with
+    these are not solved again.
     """
     space = richer_space(scene, body)
     size, cells = 6 * len(body.ports), space.flat.cells.shape[1]
@@ -142,7 +144,9 @@ def harmonic_bounds(
     of_ports = computed or _OfPorts(empty, np.zeros((size, size)))
     chosen = with_neighbours(modes, wanted)
     kept = body.cache.get(_OfModes, _OfModes)
-    new = kept.missing(chosen) + kept.missing(with_neighbours(later, wanted))
+    new = kept.missing(chosen)
+    for mode_set, names in later:
+        new += kept.missing(with_neighbours(mode_set, names))
     new = list({same(mode): mode for mode in new}.values())
     of_modes = kept.by_id
     of_modes |= {same(mode): _OfMode(mode, np.zeros(cells)) for mode in new}

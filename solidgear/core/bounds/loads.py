@@ -96,16 +96,18 @@ class LoadedPieces:
         bytes_each = 8 * (16 * nq * c * self.k + 12 * nb * nq + 2 * (c * nb) ** 2 + 9 * nb * nb)
         segments = space.flat.segment[space.pieces.parent]
         bent = space.bent[space.pieces.parent]
-        for index, segment in enumerate(space.scene.segments):
-            law = self.family.stiffness(segment.material).reshape(3 * c, 3 * c)
+        of_segments = [segment.material for segment in space.scene.segments]
+        for material in dict.fromkeys(of_segments):
+            made_of = np.array([other == material for other in of_segments])[segments]
+            law = self.family.stiffness(material).reshape(3 * c, 3 * c)
             for curved in (False, True):
-                pieces = np.flatnonzero((segments == index) & (bent == curved))
+                pieces = np.flatnonzero(made_of & (bent == curved))
                 for part in batches(pieces, bytes_each * 4e6 / BATCH):
                     g = mapped(space, part, points)
                     weight = self.family.weight(g.place[..., 0], g.det * area)
                     f = _functions(g, value, slope, np.sqrt(weight))
                     stiffness = _stiffness(f, law, c)
-                    loads = self._loads(part, g, f, value, weight, law, segment.material.density)
+                    loads = self._loads(part, g, f, value, weight, law, material.density)
                     for j, piece in enumerate(part):
                         if int(piece) in traction:
                             loads[j] += traction[int(piece)]

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import harmonic_bounds, is_bounded, with_tail
+from solidgear.core.bounds.harmonic import Later, harmonic_bounds, is_bounded, with_tail
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
@@ -58,11 +58,10 @@ def bounded(
     modes: ModeSet | None,
     names: Sequence[Quantity],
     solver: Values,
-    later: ModeSet | None = None,
+    later: Sequence[Later] = (),
 ) -> Bounded:
     """Bound some numbers of a solid from the condensed statics and the modes found and the relative
-    error that the solver may have left; `later` are modes in other supports, whose error bars will
-    be asked for.
+    error that the solver may have left; `later` are modes whose error bars will be asked for next.
     """
     frequencies = [q for q in names if q.is_frequency]
     bounds = bounds_of(
@@ -110,7 +109,7 @@ def bounds_of(
     statics: bool,
     modes: ModeSet | None,
     wanted: Sequence[str],
-    later: ModeSet | None = None,
+    later: Sequence[Later] = (),
 ) -> Any:
     """Compute the bounds of a solid, by local problems of a harmonic one, by one order more of a 3D
     one; of others as the room of their model does.

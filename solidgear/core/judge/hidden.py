@@ -31,7 +31,7 @@ def complete_list(scene: Scene, body: Body, supports: Supports, listed: ModeSet)
     """
     if COUNTED not in listed.evidence:
         return listed
-    first = _first_above(listed)
+    first = first_above(listed)
     if first is None:
         return listed
     needed = [mode.name for mode in first]
@@ -76,7 +76,7 @@ def _first_of_families(modes: ModeSet) -> list[Mode]:
     return list({mode.family: mode for mode in above}.values())
 
 
-def _first_above(modes: ModeSet) -> list[Mode] | None:
+def first_above(modes: ModeSet) -> list[Mode] | None:
     """Return the lowest mode of every eigenproblem above the end of a list; None where nothing was
     solved beyond those near one of them, on which the lower end rests.
     """

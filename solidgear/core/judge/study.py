@@ -14,15 +14,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import as_supports
+from solidgear.core.bounds.harmonic import Later
 from solidgear.core.errors import NoBounds, SolidgearError
 from solidgear.core.judge.bounded import Bounded, bounded
-from solidgear.core.judge.hidden import complete_list
+from solidgear.core.judge.hidden import complete_list, first_above
 from solidgear.core.judge.quantities import judged, usual
 from solidgear.core.judge.record import LevelRecord
 from solidgear.core.judge.reference_check import Distances, ReferenceCheck
 from solidgear.core.judge.refinement import Progress, Refinement, Solved, refine
 from solidgear.core.judge.solution import Solution
-from solidgear.core.judge.solving import Answer, Numbers, numbers
+from solidgear.core.judge.solving import Answer, Numbers, numbers, with_all_solved
 from solidgear.core.judge.tied import (
     Tied,
     modes_of,
@@ -226,7 +227,7 @@ class TiedSolver:
         refinement, ties = self.refinement, solution.ties
         unbounded = (NoBounds,) if refinement.levels else (NoBounds, NoRoom)
         try:
-            judged = _judged(refinement.scene, ties[SCENE], refinement.wanted, ties.get(SECTION))
+            judged = _judged(refinement.scene, ties[SCENE], refinement.wanted, self._later(ties))
         except unbounded as error:
             refinement.leave_without_bars(error)
             self.failed["error bar"] = refinement.without_bars
@@ -236,6 +237,19 @@ class TiedSolver:
         solution.error_bars, solution.scores = {SCENE: judged.error_bars}, judged.scores
         refinement.error_bars = judged.error_bars
         return refinement.score(judged, refinement.wanted)
+
+    def _later(self, ties: Mapping[str, Answer]) -> list[Later]:
+        """Return the modes of a mesh whose error bars are computed next, should it be the last: those
+        with section ties, and the first above the list, which bound what it hides.
+        """
+        answer, sections = ties[SCENE], ties.get(SECTION)
+        later: list[Later] = []
+        if sections is not None and sections.body is answer.body:
+            later.append((sections.modes, [q for q in answer.quantities if q.is_frequency]))
+        if self.count_modes:
+            above = [mode.name for mode in first_above(answer.modes) or ()]
+            later.append((with_all_solved(answer.modes), above))
+        return later
 
     def _finish(self, solution: Solution) -> None:
         """Add error bars with section ties, and count modes."""
@@ -262,11 +276,9 @@ def _reason(error: Exception) -> str:
 
 
 def _judged(
-    scene: Scene, answer: Answer, names: Listed[Quantity], later: Answer | None = None
+    scene: Scene, answer: Answer, names: Listed[Quantity], later: Listed[Later] = ()
 ) -> Bounded:
-    """Return error bars of an answer on its mesh, and of the modes of another answer of the
-    same body the data that both share.
-    """
+    """Return error bars of an answer on its mesh, with what those asked for later share with them."""
     existing = [q for q in dict.fromkeys((*names, *answer.quantities)) if q in answer.quantities]
     assert answer.supports is not None  # of the answer just found
     return bounded(
@@ -277,7 +289,7 @@ def _judged(
         answer.modes,
         existing,
         answer.numbers.solver,
-        later.modes if later is not None and later.body is answer.body else None,
+        later,
     )
 
 

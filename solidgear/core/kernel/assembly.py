@@ -8,12 +8,14 @@ small enough to stay in the cache: fresh memory costs more than the arithmetic.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 import scipy.linalg as sla
 import scipy.sparse as sp
-from skfem import Element, Mesh
+from skfem import Element, ElementQuad1, ElementQuad2, Mesh
 from skfem.assembly import Dofs
+from skfem.element import ElementQuadP
 
 from solidgear.core.kernel.room import assemblable, assembled
 
@@ -22,6 +24,10 @@ BATCH_BYTES = 4e6
 # extent; a bend changes the entries by about its own size.  Elements bent by more go through
 # quadrature.
 STRAIGHT = 3e-13
+#: elements of meridians: their functions of high order take longer than the matrices of a coarse mesh
+QUADRILATERALS = (ElementQuad1, ElementQuad2, ElementQuadP)
+#: coordinates of reference points up to which functions are kept: points of rules
+FEW = 2_000
 
 
 @dataclass(frozen=True)
@@ -67,6 +73,28 @@ def reference(element: Element, points: np.ndarray) -> tuple[np.ndarray, np.ndar
     >>> value.ravel()
     array([0.25, 0.25, 0.25, 0.25])
     """
+    if type(element) in QUADRILATERALS and points.size <= FEW:
+        number, points = QUADRILATERALS.index(type(element)), np.asarray(points, float)
+        return _once(number, getattr(element, "p", 0), points.shape, points.tobytes())
+    return _reference(element, points)
+
+
+@lru_cache(maxsize=64)
+def _once(
+    number: int, order: int, shape: tuple[int, ...], places: bytes
+) -> tuple[np.ndarray, np.ndarray]:
+    """Return values and gradients of a quadrilateral, of an order where its type has several, once
+    for all meshes.
+    """
+    element, points = QUADRILATERALS[number], np.frombuffer(places).reshape(shape)
+    value, gradient = _reference(element(order) if order else element(), points)
+    value.setflags(write=False)
+    gradient.setflags(write=False)
+    return value, gradient
+
+
+def _reference(element: Element, points: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Return values and gradients as :func:`reference`, evaluated anew."""
     count = element.refdom.nnodes * element.nodal_dofs
     count += (element.refdom.nedges or 0) * element.edge_dofs if element.refdom.dim() == 3 else 0
     count += element.refdom.nfacets * element.facet_dofs + element.interior_dofs

@@ -48,8 +48,11 @@ def require(need_mb: float, unknowns: str, backend: str = "", free: float | None
     it was taken, unless it is small; ``unknowns``, such as ``120 unknowns``, and the back end that
     factors them are named in the refusal.
     """
+    _limit_of_user()  # one that is no number is refused, whatever the need
+    if need_mb <= SMALL_MB:
+        return
     free = available_mb() if free is None else free
-    if free is not None and need_mb > max(free, SMALL_MB):
+    if free is not None and need_mb > free:
         by = f" to factor by {backend}" if backend else ""
         needs = f"{unknowns} need about {megabytes(need_mb)} MB{by}"
         raise NoRoom(f"{needs}, {megabytes(free)} MB are free", need_mb, free)
@@ -86,21 +89,31 @@ def available_mb(root: str | Path = "/") -> float | None:
     :func:`one_run`). Control groups are looked for in ``proc`` and ``sys`` below ``root``.
     """
     limits = [*_machine(), *_groups(Path(root)), *_address_space()]
-    text = os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip()
-    if text:
-        try:
-            allowed = float(text)
-        except ValueError:
-            allowed = 0.0
-        if not 0 < allowed < float("inf"):
-            raise SolidgearError(
-                f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero"
-            )
+    allowed = _limit_of_user()
+    if allowed is not None:
         run = _run.get()
         base = None if run is None else run.base_mb
         taken = 0.0 if base is None else max(0.0, (resident_mb() or base) - base)
         limits.append(max(0.0, allowed - taken))
     return min(limits, default=None)
+
+
+def _limit_of_user() -> float | None:
+    """Return the limit of the environment variable, MB; None without one. SolidgearError unless it is
+    a number above zero.
+    """
+    text = os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip()
+    if not text:
+        return None
+    try:
+        allowed = float(text)
+    except ValueError:
+        allowed = 0.0
+    if not 0 < allowed < float("inf"):
+        raise SolidgearError(
+            f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero"
+        )
+    return allowed
 
 
 @contextmanager

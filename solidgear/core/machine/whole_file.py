@@ -79,12 +79,15 @@ def write_files(files: Mapping[Path, bytes]) -> list[Path]:
     return [*files]
 
 
-def write_page(path: str | os.PathLike, text: str) -> Path:
+def write_page(path: str | os.PathLike, content: str | bytes) -> Path:
     """Write a file that a user named, and the folders above it, whole or not at all; refuse one
     that cannot be written.
     """
     path = Path(path)
     with whole_or_refused(path) as partial:
         path.parent.mkdir(parents=True, exist_ok=True)
-        partial.write_text(text, encoding="utf-8")
+        if isinstance(content, bytes):
+            partial.write_bytes(content)
+        else:
+            partial.write_text(content, encoding="utf-8")
     return path

@@ -15,6 +15,8 @@ import numpy as np
 
 from solidgear.core.errors import SceneError, listed, show
 from solidgear.core.frames import shift
+from solidgear.core.scene.closed_form import mass_properties
+from solidgear.core.scene.gravity import acceleration
 from solidgear.core.scene.load_case import LoadCase
 from solidgear.core.scene.load_rules import ALL, all_loads, named_case
 from solidgear.core.scene.shaft_load import ShaftLoad
@@ -26,6 +28,8 @@ if TYPE_CHECKING:
 
 #: name of what typed numbers leave of torques
 ROUNDING = "rounding"
+#: sum of torques over the sum of their sizes that is none
+EXACT = 1e-13
 
 
 @dataclass(frozen=True)
@@ -55,18 +59,20 @@ def acting_loads(scene: Scene, case: LoadCase | None = None) -> tuple[ActingLoad
         if factor := case.factor(load.name):
             six, y = load.six(factor, turning(scene.turns)), _place(load.station, scene)
             out.append(ActingLoad(load.name, load.station, y, six, factor))
-    left = fsum(load.six[4] for load in out)
-    if left and scene.torque_at is not None:
-        out.append(_torque(f"torque at {scene.torque_at}", scene.torque_at, -left, scene))
-    elif left and not holders(scene.bearings):
+    remainder = fsum(load.six[4] for load in out)
+    if abs(remainder) <= EXACT * fsum(abs(load.six[4]) for load in out):
+        return tuple(out)
+    if scene.torque_at is not None:
+        out.append(_torque(f"torque at {scene.torque_at}", scene.torque_at, -remainder, scene))
+    elif not holders(scene.bearings):
         _refuse_torques(out, case.name)
         largest = max(out, key=lambda load: abs(load.six[4]))
-        out.append(_torque(ROUNDING, largest.station, -left, scene))
+        out.append(_torque(ROUNDING, largest.station, -remainder, scene))
     return tuple(out)
 
 
 def holders(bearings: Sequence[Bearing]) -> list[str]:
-    """Return names of the bearings that hold a shaft against turning about its axis."""
+    """Return names of the bearings that hold a shaft against turning about y."""
     return [b.name for b in bearings if b.matrix is not None and b.matrix[4][4] > 0]
 
 
@@ -119,13 +125,47 @@ def torque_problems(scene: Scene) -> Iterator[SceneError]:
 def _refuse_torques(loads: Sequence[ActingLoad], case: str) -> None:
     """Refuse torques that do not add up to zero but for the rounding of typed numbers."""
     torques = {load.name: float(load.six[4]) for load in loads if load.six[4]}
-    left = fsum(torques.values())
-    if abs(left) > TYPED * fsum(map(abs, torques.values())):
+    remainder = fsum(torques.values())
+    if abs(remainder) > TYPED * fsum(map(abs, torques.values())):
         place = "" if case == ALL else f" in the case {show(case)}"
-        each = listed([f"{torque:.6g} N m of {name}" for name, torque in torques.items()])
+        parts = listed([f"{torque:.6g} N m of {name}" for name, torque in torques.items()])
         raise SceneError(
-            f"the torques do not add up to zero{place}: {each} leave {left:.6g} N m; give the load that "
-            f'takes {-left:.6g} N m, write torque_at = "NAME" of the point where the rest leaves the '
+            f"the torques do not add up to zero{place}: {parts} leave {remainder:.6g} N m; give the load that "
+            f'takes {-remainder:.6g} N m, write torque_at = "NAME" of the point where the rest leaves the '
             "shaft, or hold a bearing there (kthy)",
             path=("torque_at",),
         )
+
+
+def own_weight(scene: Scene) -> tuple[np.ndarray, float]:
+    """Return the weight (6,) of a shaft without the masses on it, N, and the place of its centre, m;
+    refused for a part from a file that is not of revolution.
+    """
+    if scene.body is not None and not scene.body.round:
+        raise SceneError(
+            "weight is that of shafts of revolution, and the part from a file is none: give loads with "
+            "a mass",
+            path=("weight",),
+        )
+    mass = mass_properties(scene.outline)
+    return np.r_[mass.mass * acceleration(scene.weight), np.zeros(3)], mass.centre
+
+
+def weights_of_masses(scene: Scene) -> dict[str, np.ndarray]:
+    """Return the weight (6,) of the masses on a shaft by the stations that carry them, N and N m."""
+    g, out = acceleration(scene.weight), dict[str, np.ndarray]()
+    for point in scene.masses:
+        six = shift(point.offset).T @ np.r_[point.mass * g, np.zeros(3)]
+        out[point.station] = out.get(point.station, np.zeros(6)) + six
+    return out
+
+
+def weight_about(scene: Scene, place: float) -> np.ndarray:
+    """Return the weight (6,) of a shaft with the masses on it about a place on the axis, m."""
+    six, centre = own_weight(scene)
+    places = {station.name: station.y for station in scene.stations}
+    loads = [ActingLoad("", "", centre, six)]
+    loads += [
+        ActingLoad("", name, places[name], load) for name, load in weights_of_masses(scene).items()
+    ]
+    return sum((load.about(place) for load in loads), np.zeros(6))

@@ -21,6 +21,7 @@ from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.blends import BLENDS
 from solidgear.core.scene.ends import seat_masses
 from solidgear.core.scene.feature_rules import FEATURES
+from solidgear.core.scene.gravity import Direction
 from solidgear.core.scene.housing import Housing, read_housing
 from solidgear.core.scene.limits import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS
 from solidgear.core.scene.load import BearingLoad
@@ -141,6 +142,8 @@ class SceneFile(Model):
     torque_at: str | None = None
     #: sense in which the shaft turns, for loads with `sense`
     turns: AlongAxis | None = None
+    #: direction in which the shaft and the masses on it weigh, in every case, such as `-z`
+    weight: Direction | None = None
     #: lubrication of the bearings, for their modified life
     lubrication: Lubrication | None = None
     #: ranges of entries by their paths, such as "material.E" = "206 GPa ± 3 %"
@@ -314,6 +317,7 @@ class _Reading:
             cases=file.case,
             torque_at=file.torque_at,
             turns=file.turns,
+            weight=file.weight,
             lubrication=file.lubrication,
             ask=Ask(**{key: getattr(file.ask, key) for key in Ask.model_fields}),
         )

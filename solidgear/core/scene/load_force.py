@@ -115,7 +115,7 @@ class Belt:
         return out
 
 
-def pulls(known: Mapping[str, float], diameter: float) -> tuple[float, float]:
+def pulls(numbers: Mapping[str, float], diameter: float) -> tuple[float, float]:
     """Return the pulls of the tight and the slack side, N, from two of `PULLS`; other numbers of them
     are refused, and pulls that no belt has.
 
@@ -124,20 +124,20 @@ def pulls(known: Mapping[str, float], diameter: float) -> tuple[float, float]:
     >>> pulls({"torque": 50.0, "pull_ratio": 3.0}, 0.2), pulls({"torque": 50.0, "slack": 0.0}, 0.2)
     ((750.0, 250.0), (500.0, 0.0))
     """
-    if len(known) != 2:
-        given = f"there are {listed([*known])}" if known else "there are none"
+    if len(numbers) != 2:
+        words = f"given here: {listed([*numbers])}" if numbers else "none is given"
         raise SceneError(
             "the pulls of a belt follow from its diameter and two of torque, tight, slack and "
-            f"pull_ratio; {given}",
+            f"pull_ratio; {words}",
             path=("diameter",),
         )
-    ratio, tight, slack = known.get("pull_ratio"), known.get("tight"), known.get("slack")
+    ratio, tight, slack = numbers.get("pull_ratio"), numbers.get("tight"), numbers.get("slack")
     if ratio is not None and ratio <= 1:
         raise SceneError(
             "must be above one: the pull of the tight side over that of the slack one",
             path=("pull_ratio",),
         )
-    differ = 2 * abs(known.get("torque", 0.0)) / diameter
+    differ = 2 * abs(numbers.get("torque", 0.0)) / diameter
     if tight is None and slack is None and ratio is not None:
         slack = differ / (ratio - 1)
     if slack is None and tight is not None:
@@ -149,6 +149,6 @@ def pulls(known: Mapping[str, float], diameter: float) -> tuple[float, float]:
         raise SceneError(
             f"a belt only pulls, and its tight side most; here the slack side has {slack:.6g} N and "
             f"the tight one {tight:.6g} N",
-            path=("slack" if "slack" in known else "tight",),
+            path=("slack" if "slack" in numbers else "tight",),
         )
     return tight, slack

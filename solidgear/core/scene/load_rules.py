@@ -42,10 +42,10 @@ def named_case(cases: Sequence[LoadCase], name: str | None = None) -> LoadCase:
     for k, case in enumerate(cases, start=1):
         if name in (case.name, str(k)):
             return case
-    known = listed([f"{k} {case.name!r}" for k, case in enumerate(cases, start=1)])
+    names = listed([f"{k} {case.name!r}" for k, case in enumerate(cases, start=1)])
     raise SolidgearError(
         f"there is no case {show(name, 40)}; "
-        + (f"there are {known}" if cases else "the scene has no [[case]]")
+        + (f"there are {names}" if cases else "the scene has no [[case]]")
     )
 
 
@@ -90,7 +90,9 @@ def load_problems(
     stations += [seated.name for seated in loads if seated.on is None]
     yield from _misplaced(loads, stations, turns)
     yield from _unknown(torque_at, [*dict.fromkeys(stations)])
-    yield from _case_problems(cases, [each.name for each in all_loads(load, loads, ports[0].name)])
+    yield from _case_problems(
+        cases, [entry.name for entry in all_loads(load, loads, ports[0].name)]
+    )
 
 
 def _misplaced(
@@ -163,5 +165,5 @@ def _case_problems(cases: Sequence[LoadCase], loads: Sequence[str]) -> Iterator[
 
 def _no_load(name: str, loads: Sequence[str]) -> str:
     """Return the reason to refuse the name of a load in a case."""
-    known = f"there are {listed(loads)}" if loads else "the file has none"
-    return f"there is no load {show(name, 40)}{nearest(name, loads)}; {known}"
+    others = f"there are {listed(loads)}" if loads else "the file has none"
+    return f"there is no load {show(name, 40)}{nearest(name, loads)}; {others}"

@@ -24,6 +24,7 @@ from solidgear.core.scene.corner import Corner
 from solidgear.core.scene.document import Origin, read_tables
 from solidgear.core.scene.ends import seat_masses, snap_seats
 from solidgear.core.scene.feature_rules import Feature
+from solidgear.core.scene.gravity import Direction
 from solidgear.core.scene.housing import ONE_HOUSING, Housing
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.load_case import LoadCase
@@ -43,7 +44,7 @@ from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import AxialSpring
 
 #: fields under which bearings of catalogue data settle
-LOADED = ("load", "loads", "cases", "turns")
+LOADED = ("load", "loads", "cases", "turns", "weight")
 
 if TYPE_CHECKING:
     BodyFile: TypeAlias = Any
@@ -109,6 +110,8 @@ class Scene(Displayed, Model):
         Station where torques that are left leave the shaft.
     turns : {'+y', '-y'} or None
         Sense in which the shaft turns.
+    weight : str or None
+        Direction of the weight of the shaft and of the masses on it, such as '-z', in every case.
     lubrication : Lubrication or None
     uncertain : tuple of Uncertain
         Ranges of entries, as factors.
@@ -152,6 +155,7 @@ class Scene(Displayed, Model):
     cases: tuple[LoadCase, ...] = ()
     torque_at: str | None = None
     turns: AlongAxis | None = None
+    weight: Direction | None = None
     lubrication: Lubrication | None = None
     uncertain: tuple[Uncertain, ...] = ()
     ask: Ask = Ask()
@@ -425,7 +429,7 @@ class Scene(Displayed, Model):
     @property
     def is_loaded(self) -> bool:
         """True where a load acts on the shaft."""
-        return self.load is not None or bool(self.loads)
+        return self.load is not None or bool(self.loads) or self.weight is not None
 
     def with_case(self, name: str) -> Scene:
         """The same scene with the case of a name first, under which bearings of catalogue data settle.

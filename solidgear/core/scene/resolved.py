@@ -40,7 +40,7 @@ def resolved(scene: Scene) -> dict[str, Any]:
             row["housing"] = bearing.housing.entries
     if scene.housing is not None:
         data["housing"] = {"y": scene.housing.y, "entries": scene.housing.entries}
-    for key in ("load", "torque_at", "turns", "lubrication", "body", "housing"):
+    for key in ("load", "torque_at", "turns", "weight", "lubrication", "body", "housing"):
         if data[key] is None:
             del data[key]
     for key in ("groups", "told", "mixed", "remarks"):

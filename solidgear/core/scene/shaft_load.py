@@ -9,6 +9,7 @@ import numpy as np
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.core.errors import SceneError, show
+from solidgear.core.scene.gravity import GRAVITY
 from solidgear.core.scene.load import ABOUT_AXIS
 from solidgear.core.scene.load_force import (
     ACROSS,
@@ -19,6 +20,7 @@ from solidgear.core.scene.load_force import (
     direction,
     pulls,
 )
+from solidgear.core.scene.load_kinds import check_words, kind_of
 from solidgear.core.scene.places import Along, Placed, Places
 from solidgear.core.scene.stations import Attachment, Port
 from solidgear.core.scene.units import (
@@ -39,34 +41,8 @@ from solidgear.core.scene.units import (
 )
 from solidgear.core.scene.written import Written
 
-#: m/s^2, standard gravity (ISO 80000-3)
-GRAVITY = 9.80665
 ON_A_STATION = "belongs to a place of its own; a load on a station has that of the station"
 
-#: kinds of load with the words that make it one
-KINDS: dict[str, tuple[str, ...]] = {
-    "components": ("x", "y", "z", "thx", "thz"),
-    "gear": (
-        "pitch_diameter",
-        "tangential_force",
-        "pressure_angle",
-        "helix_angle",
-        "hand",
-        "pitch_angle",
-        "apex",
-    ),
-    "belt": ("diameter", "tight", "slack", "pull_ratio"),
-    "weight": ("mass",),
-    "force": ("radial", "axial"),
-}
-#: further words of every kind
-FURTHER: dict[str, tuple[str, ...]] = {
-    "components": ("torque",),
-    "gear": ("torque", "towards", "sense"),
-    "belt": ("torque", "towards", "sense"),
-    "weight": ("towards",),
-    "force": ("towards",),
-}
 TOWARDS = (
     'must be "+x", "-x", "+z", "-z", or an angle from x towards z such as "30 deg": from the axis '
     "to the tooth contact, the other pulley, or where the force points"
@@ -91,32 +67,6 @@ def _towards(value: Any) -> Any:
 
 
 Towards = Annotated[str | float, BeforeValidator(_towards), Written(AxisWord | SignedAngle)]
-
-
-#: kinds with an article
-A_KIND = {
-    "components": "a load by components",
-    "gear": "a gear",
-    "belt": "a belt or chain",
-    "weight": "a weight",
-    "force": "a radial or axial force",
-}
-#: words that a kind needs one of: if a first word is given, or, where that is empty, in any case
-NEEDED: dict[str, tuple[tuple[str, ...], ...]] = {
-    "components": (),
-    "gear": (
-        ("", "pitch_diameter"),
-        ("", "torque", "tangential_force"),
-        ("", "towards"),
-        ("helix_angle", "hand"),
-        ("hand", "helix_angle"),
-        ("pitch_angle", "apex"),
-        ("apex", "pitch_angle"),
-    ),
-    "belt": (("", "diameter"), ("", "towards")),
-    "weight": (("", "towards"),),
-    "force": (("radial", "towards"), ("towards", "radial")),
-}
 
 
 class ShaftLoad(Placed):
@@ -289,67 +239,27 @@ class ShaftLoad(Placed):
                 'write position = "28 mm" and seat_width',
                 path=("on",),
             )
-        self._check_words()
+        check_words(self)
         self.pulls()
         return self
 
     @property
     def kind(self) -> str:
         """Kind of load, of `KINDS`: that of which words are given."""
-        for kind, words in KINDS.items():
-            if any(getattr(self, word) is not None for word in words):
-                return kind
-        return "components"
-
-    def _check_words(self) -> None:
-        """Refuse words of two kinds, words that the kind does not take, and missing ones."""
-        word_of = {
-            kind: next((w for w in words if getattr(self, w) is not None), None)
-            for kind, words in KINDS.items()
-        }
-        kinds = [kind for kind, word in word_of.items() if word is not None]
-        if len(kinds) > 1:
-            first, second = kinds[:2]
-            raise SceneError(
-                f"says one load in two ways: {word_of[first]} makes it {A_KIND[first]}, "
-                f"{word_of[second]} {A_KIND[second]}; keep one, or write two loads",
-                path=(str(word_of[second]),),
-            )
-        if not kinds and self.torque is None:
-            raise SceneError(
-                "gives no force: write x, y, z, thx, thz or torque; torque with pitch_diameter (a gear) "
-                "or diameter (a belt); mass; or radial and axial",
-                path=(),
-            )
-        kind = self.kind
-        strange = [w for w in ("torque", "towards", "sense") if w not in FURTHER[kind]]
-        for word in strange:
-            if getattr(self, word) is not None:
-                raise SceneError(f"does not belong to {A_KIND[kind]}", path=(word,))
-        for first, *needed in NEEDED[kind]:
-            if first and getattr(self, first) is None:
-                continue
-            if not any(getattr(self, word) is not None for word in needed):
-                reason = f"this key is missing; {A_KIND[kind]} needs {' or '.join(needed)}"
-                reason += f" with {first}" * bool(first)
-                raise SceneError(reason, path=(needed[0],))
-        if self.torque is not None and self.tangential_force is not None:
-            raise SceneError(
-                "give either torque or tangential_force, not both", path=("tangential_force",)
-            )
+        return kind_of(self)
 
     def pulls(self) -> tuple[float, float] | None:
         """Return the pulls of the tight and the slack side of a belt, N; None of another load."""
         if self.kind != "belt" or self.diameter is None:
             return None
-        known = {word: getattr(self, word) for word in PULLS if getattr(self, word) is not None}
+        numbers = {word: getattr(self, word) for word in PULLS if getattr(self, word) is not None}
         if self.torque is None and self.sense is None:
             raise SceneError(
                 'this key is missing: "driven" where the belt turns the shaft, "driving" where it '
                 "is turned, or give torque with a sign",
                 path=("sense",),
             )
-        return pulls(known, self.diameter)
+        return pulls(numbers, self.diameter)
 
     def six(self, factor: float = 1.0, turns: float = 1.0) -> np.ndarray:
         """Return the load on the axis, times a factor.
@@ -410,7 +320,8 @@ class ShaftLoad(Placed):
         out = []
         if self.kind == "gear" and self.pressure_angle is None:
             out.append(f"{self.name}: pressure angle 20 deg assumed")
-        if self.kind == "belt":
+        sides = self.pulls()
+        if sides is not None and sides[1] > 0:
             out.append(f"{self.name}: both sides of the belt pull along one direction")
         return tuple(out)
 

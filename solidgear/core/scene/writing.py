@@ -72,6 +72,7 @@ def unsettled_tables(scene: Scene) -> Table:
         "source": scene.source,
         "torque_at": scene.torque_at,
         "turns": scene.turns,
+        "weight": scene.weight,
         "material": material_entry(scene.material),
         "body": None,
         "segment": [],

@@ -78,27 +78,27 @@ class Circumference:
                 return n
         return 2
 
-    def __call__(self, shape: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return amplitudes of one shape (n, 3), displacements x, y, z: the profile (waves + 1,
+    def __call__(self, shapes: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return amplitudes of shapes (..., n, 3), displacements x, y, z: profiles (..., waves + 1,
         bins * 3), of which row n is the radial, tangential and axial motion ``Re(c exp(i n t))``,
         bin by bin, weighted so that the squared norm of a row is the share of the mass that moves
-        so; and those squared norms by direction of motion (waves + 1, 3).
+        so; and those squared norms by direction of motion (..., waves + 1, 3).
         """
         c, s = np.cos(self._angle), np.sin(self._angle)
+        x, y, z = np.moveaxis(shapes, -1, 0)
         # z = r cos t, x = r sin t
-        motion = np.column_stack(
-            [shape[:, 2] * c + shape[:, 0] * s, shape[:, 0] * c - shape[:, 2] * s, shape[:, 1]]
-        )
-        n = self.waves
-        out = np.zeros((n + 1, len(self._bins), 3), complex)
+        motion = np.stack([z * c + x * s, x * c - z * s, y], axis=-1)
+        n, of_shapes = self.waves, shapes.shape[:-2]
+        out = np.zeros((*of_shapes, n + 1, len(self._bins), 3), complex)
         for k, (members, fit, gram) in enumerate(self._bins):
-            amplitudes = fit @ motion[members]
+            amplitudes = fit @ motion[..., members, :]
             size = np.sqrt(np.diag(gram))[:, None]
-            out[0, k] = amplitudes[0] * size[0]
+            out[..., 0, k, :] = amplitudes[..., 0, :] * size[0]
             # cosine and sine weigh alike but for the placing of nodes
             weight = np.sqrt((size[1 : n + 1] ** 2 + size[n + 1 :] ** 2) / 2)
-            out[1:, k] = (amplitudes[1 : n + 1] - 1j * amplitudes[n + 1 :]) * weight
-        return out.reshape(n + 1, -1), (np.abs(out) ** 2).sum(axis=1)
+            waves = amplitudes[..., 1 : n + 1, :] - 1j * amplitudes[..., n + 1 :, :]
+            out[..., 1:, k, :] = waves * weight
+        return out.reshape(*of_shapes, n + 1, -1), (np.abs(out) ** 2).sum(axis=-2)
 
 
 def _basis(angle: np.ndarray, waves: int) -> np.ndarray:

@@ -1,5 +1,5 @@
-"""Lowest eigenpairs of a supported group of blocks: block Lanczos, ARPACK or dense, all checked the
-same way.
+"""Lowest eigenpairs of a supported group of blocks: Lanczos by blocks or by single vectors, ARPACK or
+dense, all checked the same way.
 
 All rest on one factor of the free body; bearings come in by the Woodbury identity
 (:class:`~solidgear.core.solve.supported.Supported`).
@@ -29,8 +29,8 @@ log = logging.getLogger(__name__)
 DENSE = 120
 METHODS = ("lanczos", "arpack", "dense")
 # SuperLU solves eight right-hand sides no faster than eight times one, nor does PARDISO where the
-# factor stays in the cache, and ARPACK needs fewer: measured 0.3 s against 0.6 s on a meridian, 1.5 s
-# against 1.7 s for four halves of 4,000 to 5,000 unknowns; as many for 7,000.
+# factor stays in the cache, and one vector at a time needs fewer: measured 0.3 s against 0.6 s on a
+# meridian, 1.5 s against 1.7 s for four halves of 4,000 to 5,000 unknowns; as many for 7,000.
 SINGLE = ("superlu",)
 CACHED = 6_000  # unknowns
 WIDTH = 8
@@ -65,8 +65,8 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
     """Find elastic and rigid modes of blocks that belong together: `n`, and two more, so that a
     pair at the end of the list is not cut.
 
-    Without a method the quickest for the size and the back end is taken. If block Lanczos does not
-    converge ARPACK takes over; SolidgearError if that does not, or if the method is unknown.
+    Without a method Lanczos is taken, and LAPACK's dense solver where that is quicker. If Lanczos does
+    not converge ARPACK takes over; SolidgearError if that does not, or if the method is unknown.
     """
     if method not in (None, *METHODS):
         raise SolidgearError(
@@ -77,12 +77,7 @@ def lowest(supported: Supported, n: int, method: str | None = None) -> Solved:
     if wanted < 1:
         method, theta, u = "dense", np.zeros(0), np.zeros((total, 0))
     else:
-        if method is None:
-            # One vector sees one of two equal modes only through rounding: it is for a group that
-            # holds no twins.
-            without_twins = len(supported.blocks) == 1 and _without_twins(supported.blocks[0])
-            one_by_one = supported.backend in SINGLE or total <= CACHED
-            method = "arpack" if without_twins and one_by_one else "lanczos"
+        method = method or "lanczos"
         if total <= DENSE or wanted >= total - 2 - WIDTH:
             method = "dense"
         theta, u, method = {"dense": _dense, "arpack": _arpack, "lanczos": _lanczos}[method](
@@ -136,11 +131,16 @@ def _lanczos(supported: Supported, wanted: int):
 
 
 def _block_lanczos(supported: Supported, wanted: int):
+    # One vector sees one of two equal modes only through rounding: it is for a group that holds no
+    # twins.
+    without_twins = len(supported.blocks) == 1 and _without_twins(supported.blocks[0])
+    one_by_one = supported.backend in SINGLE or supported.size <= CACHED
+    width = 1 if without_twins and one_by_one else WIDTH
     # Loads drawn at random excite every shape, whatever its symmetry. Static solutions under port
     # loads are no better a start (they needed one block more on a pinion of 93,000 unknowns) and
     # cannot see a mode that moves no port.
     start = supported.inverse(
-        supported.mass(np.random.default_rng(0).standard_normal((supported.size, WIDTH)))
+        supported.mass(np.random.default_rng(0).standard_normal((supported.size, width)))
     )
     pairs = block_lanczos(
         supported.inverse,
@@ -152,11 +152,9 @@ def _block_lanczos(supported: Supported, wanted: int):
     )
     if pairs.converged and len(pairs.theta) == wanted:
         return pairs.theta, pairs.vectors, "lanczos"
-    log.warning(
-        "block Lanczos did not converge within %d vectors; ARPACK takes over", pairs.columns
-    )
+    log.warning("Lanczos did not converge within %d vectors; ARPACK takes over", pairs.columns)
     theta, u, _ = _arpack(supported, wanted)
-    return theta, u, f"arpack (block Lanczos did not converge within {pairs.columns} vectors)"
+    return theta, u, f"arpack (Lanczos did not converge within {pairs.columns} vectors)"
 
 
 def _arpack(supported: Supported, wanted: int):

@@ -13,6 +13,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from solidgear.core.body import FURTHER, Block, Body, Supports, component_rows
+from solidgear.core.body.cache import LastTwo
 from solidgear.core.errors import SolidgearError
 from solidgear.core.solve.coupling import groups
 from solidgear.core.solve.eigen import Raw, Solved, count_below, lowest
@@ -109,11 +110,10 @@ def solved_parts(
     `spring` (6 m, 6 m) is that of :func:`~solidgear.core.solve.coupling.decoupled`. SolidgearError as
     :func:`~solidgear.core.solve.eigen.lowest`.
     """
-    kept = body.cache.get(_OwnParts, _OwnParts)
-    parts = kept.on(supports, spring, method)
-    if parts is None:
-        parts = _unsolved_parts(body, supports, spring, n)
-        kept.keep(parts, supports, spring, method)
+    parts = body.cache.get(_OwnParts, _OwnParts).on(
+        (*supports.key, spring.tobytes(), method),
+        lambda: _unsolved_parts(body, supports, spring, n),
+    )
     waiting = [part for part in parts if part.solved is None]
     while True:
         for part in waiting:
@@ -156,30 +156,10 @@ def _unsolved_parts(body: Body, supports: Supports, spring: np.ndarray, n: int) 
     return parts
 
 
-class _OwnParts:
-    """Groups of the own blocks of a body, solved on the last two sets of springs: who asks for more
-    modes, or for their count, goes on from there.
+class _OwnParts(LastTwo[list[Part]]):
+    """Groups of the own blocks of a body on some springs: who asks for more modes, or for their
+    count, goes on from there.
     """
-
-    def __init__(self) -> None:
-        self._parts: dict[tuple, list[Part]] = {}
-
-    @staticmethod
-    def _key(supports: Supports, spring: np.ndarray, method: str | None) -> tuple:
-        matrices = (supports.stiffness, supports.masses, spring)
-        return supports.ports, supports.attachments, method, *(m.tobytes() for m in matrices)
-
-    def on(self, supports: Supports, spring: np.ndarray, method: str | None) -> list[Part] | None:
-        """Return the groups on some springs; None where these are new."""
-        return self._parts.get(self._key(supports, spring, method))
-
-    def keep(
-        self, parts: list[Part], supports: Supports, spring: np.ndarray, method: str | None
-    ) -> None:
-        """Keep the groups on some springs, in the place of the oldest."""
-        while len(self._parts) >= 2:
-            del self._parts[next(iter(self._parts))]
-        self._parts[self._key(supports, spring, method)] = parts
 
 
 def reach_of(parts: list[Part], n: int, highest: float = np.inf) -> float:

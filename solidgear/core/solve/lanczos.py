@@ -67,7 +67,7 @@ def block_lanczos(
     basis, heavy = (np.empty((n, most + width), order="F") for _ in range(2))
     small = np.zeros((most + width,) * 2)
     k = 0
-    block, loaded, _ = _orthonormal(start, mass)
+    block, loaded, _ = _orthonormal(start, mass(start))
     while True:
         p = block.shape[1]
         basis[:, k : k + p], heavy[:, k : k + p] = block, loaded
@@ -76,9 +76,11 @@ def block_lanczos(
         ahead = operator(loaded)
         column = mq.T @ ahead
         small[:k, old:k], small[old:k, :k] = column, column.T
+        block, loaded, coupling = _outside(ahead, column, q, mq, mass)
+        if k < min(wanted, n) and block.shape[1]:
+            continue
         theta, s = np.linalg.eigh((small[:k, :k] + small[:k, :k].T) / 2)
         theta, s = theta[::-1][:wanted], s[:, ::-1][:, :wanted]
-        block, loaded, coupling = _outside(ahead, column, q, mq, mass)
         residual = np.linalg.norm(coupling @ s[old:], axis=0)
         converged = k >= min(wanted, n) and bool((residual <= tolerance * np.abs(theta)).all())
         if not converged and not block.shape[1] and k < n:
@@ -90,15 +92,16 @@ def block_lanczos(
             return Eigenpairs(theta, q @ s, k, converged)
 
 
-def _orthonormal(x, mass, least: float = 0.0):
+def _orthonormal(x, heavy, least: float = 0.0):
     """Return mass-orthonormal columns that span ``x``, their product with the mass, and the
-    coefficients of ``x`` on them.
+    coefficients of ``x`` on them; `heavy` is the product of ``x`` with the mass.
 
     Columns shorter than ``least`` and directions that are the rounding of others are left out.
     """
-    heavy = mass(x)
     gram = x.T @ heavy
     length = np.sqrt(np.maximum(np.diag(gram), 0.0))
+    if x.shape[1] == 1 and length[0] > least:
+        return x / length, heavy / length, length[:, None]
     unit = np.where(length > least, 1 / np.where(length > 0, length, 1.0), 0.0)
     w, v = np.linalg.eigh((gram + gram.T) / 2 * np.outer(unit, unit))
     keep = w > 1e-12
@@ -115,6 +118,8 @@ def _outside(x, inside, basis, heavy, mass):
     to unit length in between.
     """
     rounding = 1e-13 * float(np.linalg.norm(inside))
-    y, _, first = _orthonormal(x - basis @ inside, mass, rounding)
-    y, loaded, second = _orthonormal(y - basis @ (heavy.T @ y), mass)
+    rest = x - basis @ inside
+    y, loaded, first = _orthonormal(rest, mass(rest), rounding)
+    again = heavy.T @ y
+    y, loaded, second = _orthonormal(y - basis @ again, loaded - heavy @ again)
     return y, loaded, second @ first

@@ -10,7 +10,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.core.solve.families import FAMILIES
-from solidgear.core.solve.naming import shares
+from solidgear.core.solve.naming import Shares
 
 if TYPE_CHECKING:
     from solidgear.core.solve.modes import Mode, ModeSet
@@ -63,6 +63,6 @@ def mixtures(mode_set: ModeSet) -> tuple[Mixture, ...]:
 
 def _shares(mode_set: ModeSet, mode: Mode) -> dict[str, float]:
     """Return the share of the section motions of a mode that moves as each family does."""
-    energy = shares(mode.motions[0], mode_set.gram)
+    energy = Shares(mode_set.gram).by_family(mode.motions[0])
     total = sum(energy.values())
     return {family: value / total for family, value in energy.items()}

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, ClassVar
 import numpy as np
 
 from solidgear.core.body import FURTHER, Body, as_supports
+from solidgear.core.body.cache import LastTwo
 from solidgear.core.body.mode_names import BENDING, ModeName, meant, numbered
 from solidgear.core.body.model import refuse_no_body
 from solidgear.core.display import Displayed
@@ -32,7 +33,7 @@ from solidgear.core.solve.groups import (
     reach_of,
     solved_parts,
 )
-from solidgear.core.solve.naming import Names, Projection, shares
+from solidgear.core.solve.naming import Names, Projection
 from solidgear.core.solve.shifted import SHIFT, factors
 
 if TYPE_CHECKING:
@@ -239,7 +240,9 @@ def modes(
     if stations not in kept:
         kept[stations] = Projection(body, np.linspace(0.0, body.length, stations))
     project = kept[stations]
-    names = Names(body, supports, project)
+    names = body.cache.get(_NamesOnBody, _NamesOnBody).on(
+        (*supports.key, stations), lambda: Names(body, supports, project)
+    )
     rigid = [r for part in parts for r in part.with_twins(part.solved.free)]
     listed, further, above, split_pairs, family_frequencies = _named(
         body, names, parts, n, max_frequency
@@ -279,6 +282,12 @@ class _Projections(dict[int, Projection]):
     """Projections of shapes onto section motions by the number of stations; springs do not matter."""
 
 
+class _NamesOnBody(LastTwo[Names]):
+    """Names of the shapes of a body on some springs: who asks for more modes, or for their count,
+    goes on from those that have one.
+    """
+
+
 def _lowest(parts: list[Part], count: int) -> list[Raw]:
     raw = [r for part in parts for r in part.with_twins(part.solved.elastic)]
     return sorted(raw, key=lambda r: r.value)[:count]
@@ -288,7 +297,7 @@ def _rigid(names: Names, raw: list[Raw]):
     """Yield modes at 0 Hz."""
     for r in raw:
         motion = names.project(r.vectors)
-        described = shares(motion, names.project.gram)
+        described = names.project.shares.by_family(motion)
         family = max(described, key=described.__getitem__)
         several = sum(share > 0.01 for share in described.values()) > 1
         name = "rigid (combined)" if several else f"rigid {family}"
@@ -313,7 +322,7 @@ def _named(body, names: Names, parts: list[Part], n: int, max_frequency: float |
     """
     complete_to = completeness_limits(parts)
     raw = _lowest(parts, sum(len(part.with_twins(part.solved.elastic)) for part in parts))
-    shapes = [names.describe(r.vectors) for r in raw]
+    shapes = names.describe([r.vectors for r in raw])
     value = np.array([r.value for r in raw])
     shapes = names.unmixed(shapes, [r.vectors for r in raw], value)
     groups = names.pairs(shapes, value)

@@ -39,6 +39,8 @@ _QUARTER = rotation(1, np.pi / 2)
 #: Distance, relative, that 3D meshes usually leave between eigenvalues of twins of two and more
 #: waves.
 OVAL_TOLERANCE = 1e-2
+#: shapes of a 3D mesh that are fitted around the axis at once
+TOGETHER = 8
 
 
 @dataclass
@@ -63,6 +65,15 @@ class Shape:
         return f"{self.family} {self.plane}" if self.plane else self.family
 
 
+#: numbers and fields of the blocks that a shape moves: the same in every list that has it
+Same = tuple[tuple[int, int], ...]
+
+
+def same(vectors: dict[int, np.ndarray]) -> Same:
+    """Return what a shape, by block index, has in common with itself in another list."""
+    return tuple((block, id(field)) for block, field in vectors.items())
+
+
 #: loads, Gram matrix and columns of the section motions of a block
 _Loads = tuple[np.ndarray, np.ndarray, np.ndarray]
 
@@ -83,6 +94,7 @@ class Projection:
             loads_of_blocks.append((loaded, gram, columns))
             self.gram[np.ix_(columns, columns)] += gram
             self.parts.append((loaded, columns, np.linalg.pinv(gram, rcond=1e-12, hermitian=True)))
+        self.shares = Shares(self.gram)
 
     def __call__(self, vectors: dict[int, np.ndarray]) -> np.ndarray:
         """Return the (stations, 6) motions of a shape."""
@@ -94,18 +106,27 @@ class Projection:
         return out.reshape(self.count, 6)
 
 
-def shares(motion: np.ndarray, gram: np.ndarray) -> dict[str, float]:
-    """Return the modal mass that each family of section motions (s, 6) describes, by the names of
-    ``FAMILIES``; `gram` is their mass matrix.
-    """
-    return {family: _share(motion, gram, components) for family, components in FAMILIES.items()}
+class Shares:
+    """Modal mass that section motions (s, 6) describe, by their mass matrix (6 s, 6 s)."""
 
+    def __init__(self, gram: np.ndarray):
+        self._gram = gram
+        # rows and mass matrix of the motions of some components
+        self._parts: dict[tuple[int, ...], tuple[np.ndarray, np.ndarray]] = {}
 
-def _share(motion: np.ndarray, gram: np.ndarray, components: Sequence[int]) -> float:
-    """Return the modal mass that some components of section motions describe."""
-    rows = component_rows(range(len(motion)), components)
-    part = motion.ravel()[rows]
-    return float(part @ gram[np.ix_(rows, rows)] @ part)
+    def by_family(self, motion: np.ndarray) -> dict[str, float]:
+        """Return the part of each family, by the names of ``FAMILIES``."""
+        return {name: self.of(motion, components) for name, components in FAMILIES.items()}
+
+    def of(self, motion: np.ndarray, components: Sequence[int]) -> float:
+        """Return the part of some components."""
+        chosen = tuple(components)
+        if chosen not in self._parts:
+            rows = component_rows(range(len(motion)), chosen)
+            self._parts[chosen] = rows, self._gram[np.ix_(rows, rows)]
+        rows, gram = self._parts[chosen]
+        part = motion.ravel()[rows]
+        return float(part @ gram @ part)
 
 
 def _section_loads(block: Block, stations: np.ndarray, loads_of_blocks: list[_Loads]) -> _Loads:
@@ -142,18 +163,29 @@ class Names:
         self._mirrored = any(block.mirror is not None for block in body.blocks)
         self._round = circumference_of(body)
         self._moving_axially: dict[int, np.ndarray] = {}
-        # momenta of shapes by the identity of their profile, which is kept alive beside them
-        self._momenta: dict[int, tuple[dict, dict[int, np.ndarray]]] = {}
-        # fits of shapes around the axis, in the same way
-        self._fitted: dict[int, tuple[dict, np.ndarray, np.ndarray]] = {}
+        # momenta of shapes, which are kept alive beside them
+        self._momenta: dict[Same, tuple[dict, dict[int, np.ndarray]]] = {}
+        # fits of shapes around the axis, and what is known of them, in the same way
+        self._fitted: dict[Same, tuple[dict, np.ndarray, np.ndarray]] = {}
+        self._described: dict[Same, tuple[dict, Shape]] = {}
 
-    def describe(self, vectors: dict[int, np.ndarray]) -> Shape:
-        """Return family, waves around, section motions and profile of one shape, by block index."""
+    def describe(self, shapes: Sequence[dict[int, np.ndarray]]) -> list[Shape]:
+        """Return family, waves around, section motions and profile of some shapes, by block index,
+        each described once.
+        """
+        if self._round is not None:
+            self._fit(*self._round, shapes)
+        for vectors in shapes:
+            if same(vectors) not in self._described:
+                self._described[same(vectors)] = vectors, self._shape(vectors)
+        return [self._described[same(vectors)][1] for vectors in shapes]
+
+    def _shape(self, vectors: dict[int, np.ndarray]) -> Shape:
         motion = self.project(vectors)
-        described = shares(motion, self.project.gram)
+        described = self.project.shares.by_family(motion)
         profile: np.ndarray | dict[int, np.ndarray] = vectors
         if self._round is not None:
-            energy, profile = self._around(*self._round, vectors)
+            energy, profile = self._around(self._round[0], vectors)
         elif any(has_several_families(self.body.block(b)) for b in vectors):
             energy = {
                 (1 if name == "bending" else 0, name): share for name, share in described.items()
@@ -179,27 +211,29 @@ class Names:
         """Return the plane of bending of a part with a mirror plane, unless bearings couple both."""
         if not self._planes or family != "bending":
             return ""
-        planes = [_share(motion, self.project.gram, components) for components in ((2, 3), (0, 5))]
+        planes = [self.project.shares.of(motion, components) for components in ((2, 3), (0, 5))]
         share = planes[0] / sum(planes)
         return "z" if share > 0.99 else "x" if share < 0.01 else ""
 
-    def _waves(
-        self, fit: Circumference, displacements: Displacements, vectors: dict[int, np.ndarray]
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the profile of a shape by waves around the axis, and the shares of the waves, once
-        a shape.
-        """
-        if id(vectors) not in self._fitted:
-            self._fitted[id(vectors)] = vectors, *fit(displacements(vectors))
-        return self._fitted[id(vectors)][1:]
-
-    def _around(
+    def _fit(
         self,
         fit: Circumference,
         displacements: Displacements,
-        vectors: dict[int, np.ndarray],
+        shapes: Sequence[dict[int, np.ndarray]],
+    ) -> None:
+        """Fit shapes by waves around the axis, some at a time."""
+        new = [vectors for vectors in shapes if same(vectors) not in self._fitted]
+        for first in range(0, len(new), TOGETHER):
+            some = new[first : first + TOGETHER]
+            fits = zip(*fit(np.array([displacements(vectors) for vectors in some])))
+            for vectors, (profile, share) in zip(some, fits):
+                self._fitted[same(vectors)] = vectors, profile, share
+
+    def _around(
+        self, fit: Circumference, vectors: dict[int, np.ndarray]
     ) -> tuple[dict[tuple[int, str], float], np.ndarray]:
-        profile, share = self._waves(fit, displacements, vectors)
+        """Return the shares of a shape by waves and family, and its profile by waves."""
+        _, profile, share = self._fitted[same(vectors)]
         radial, tangential, axial = share[0]
         energy = {
             (0, "torsion"): tangential,
@@ -240,7 +274,7 @@ class Names:
     def _by_family(self, shapes: list[Shape], vectors: list[dict[int, np.ndarray]]) -> list[Shape]:
         """Name each of some neighbours by a family that their space holds, as often as it holds it."""
         assert self._round is not None
-        fitted = [self._waves(*self._round, v) for v in vectors]
+        fitted = [self._fitted[same(v)][1:] for v in vectors]
         around = np.array([profile for profile, _ in fitted])
         level = around[:, 0].reshape(len(shapes), -1, 3)
         rows = {(0, "torsion"): level[:, :, 1], (0, ""): level[:, :, ::2].reshape(len(shapes), -1)}
@@ -335,10 +369,10 @@ class Names:
 
     def _momentum(self, shape: dict[int, np.ndarray]) -> dict[int, np.ndarray]:
         """Return ``M u`` by block, once a shape: every shape is compared with all others."""
-        if id(shape) not in self._momenta:
+        if same(shape) not in self._momenta:
             heavy = {b: self.body.block(b).mass @ v for b, v in shape.items()}
-            self._momenta[id(shape)] = shape, heavy
-        return self._momenta[id(shape)][1]
+            self._momenta[same(shape)] = shape, heavy
+        return self._momenta[same(shape)][1]
 
     def pairs(self, shapes: list[Shape], value: np.ndarray) -> list[tuple[int, ...]]:
         """Group shapes that belong together, by their eigenvalues (k,), ascending: pairs and single
@@ -370,6 +404,7 @@ class Names:
             for i in range(len(shapes))
             if partner.get(i) != i
         ]
+        self._momenta.clear()  # as large as the shapes
         return groups
 
     def _promises_twins(self, shape: Shape) -> bool:

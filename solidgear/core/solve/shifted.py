@@ -52,7 +52,8 @@ def needed_mb(body: Body, factoring: Factoring) -> float:
 
 
 def _factored(body: Body) -> Factored:
-    free = available_mb()
+    # what factors planar matrices takes no memory to analyse them
+    free = None if all(block.planar for block in body.blocks) else available_mb()
     analysed = plans(body, body.factoring)
     try:
         factors_made = dict(zip(analysed, factored([*analysed.values()], free)))

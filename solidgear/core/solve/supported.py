@@ -78,7 +78,7 @@ class Supported:
         if self.load.shape[1]:
             self._fast = np.abs(spring).max() > FAST
             self._through = self._free_inverse(self.load)
-            self._inner = sla.lu_factor(np.eye(self.load.shape[1]) + self.load.T @ self._through)
+            self._inner = _solver(np.eye(self.load.shape[1]) + self.load.T @ self._through)
 
     def _on_seats(self, body, supports, matrix) -> tuple[np.ndarray, list]:
         """Return a matrix of the ports on the components of the group, and for every block the rows
@@ -147,8 +147,9 @@ class Supported:
 
     def _per_block(self, f: Callable[[int, np.ndarray], np.ndarray], x: np.ndarray) -> np.ndarray:
         # one block is the common case, and large vectors are not copied for it
-        results = [f(i, part) for i, part in enumerate(self.parts(x))]
-        return results[0] if len(results) == 1 else np.concatenate(results)
+        if len(self.blocks) == 1:
+            return f(0, x)
+        return np.concatenate([f(i, part) for i, part in enumerate(self.parts(x))])
 
     def _free_inverse(self, x: np.ndarray) -> np.ndarray:
         """Return ``(K + shift M)^-1 x``.
@@ -212,7 +213,7 @@ class Supported:
         """
         if not self._fast:
             return None
-        return sla.lu_solve(self._inner, self._through.T @ self._without_free(x))
+        return self._inner(self._through.T @ self._without_free(x))
 
     def forward(self, u: np.ndarray, stretch: np.ndarray | None = None) -> np.ndarray:
         """Return ``(K + springs + shift M) u`` of (n, k) displacements; the rigid part, which K
@@ -260,7 +261,7 @@ class Supported:
             # seat comes to rest where y itself is held, by that matrix as it is: half of it, or
             # loads on the inverse, leave it 1e-10 of a motion, whose energy a clamp makes a part of
             # the frequency.
-            y = y - self._through @ sla.lu_solve(self._inner, self.load.T @ y)
+            y = y - self._through @ self._inner(self.load.T @ y)
         return self.purge(y)
 
     @cached_property
@@ -286,7 +287,7 @@ class Supported:
         if self.load.shape[1]:
             lost = np.abs(out) < ROUNDED * self.spread(u)
             if lost.any():
-                out = np.where(lost, sla.lu_solve(self._inner, self._through.T @ loads), out)
+                out = np.where(lost, self._inner(self._through.T @ loads), out)
         return out
 
     def spread(self, u: np.ndarray) -> np.ndarray:
@@ -349,6 +350,14 @@ class Supported:
         return elastic_fields(self._free_inverse, self.mass, self.elastic, rigid, load, tolerance)[
             1
         ]
+
+
+def _solver(matrix: np.ndarray) -> Callable[[np.ndarray], np.ndarray]:
+    """Return the solution of systems with a small matrix, by LAPACK itself: scipy's checks of every
+    call take as long as the factor of a coarse block.
+    """
+    lu, pivot = sla.lu_factor(matrix)
+    return lambda right: sla.lapack.dgetrs(lu, pivot, right)[0].reshape(right.shape)
 
 
 class _MassUpdate:

@@ -15,6 +15,7 @@ from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import Choice
 from solidgear.core import DOF_NAMES, WITHIN, Sheeted, SolidgearError, gap_verdict, listed, pinned
 from solidgear.core.plain import plain
+from solidgear.core.scene.acting import holders
 from solidgear.strength.deflection.face_load import FaceLoad, face_loads
 from solidgear.strength.deflection.leading import leading_bearing
 from solidgear.strength.deflection.misalignment import Measure, misalignment
@@ -33,6 +34,7 @@ from solidgear.trains.file.train import ALONE, Train
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.load.state import OperatingState
 from solidgear.trains.load.static_errors import StaticErrors
+from solidgear.trains.load.twist import still_station
 
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
@@ -89,6 +91,9 @@ class Deflection:
     led: str = ""
     statics: Statics | None = None  #: of a shaft alone
     lumped: tuple[str, ...] = ()  #: names of the lumped points of a shaft alone
+    still: str = (
+        ""  #: station of a twisted shaft alone that does not turn; empty where bearings hold it
+    )
 
     @property
     def model(self) -> str:
@@ -366,6 +371,7 @@ def _solution(
         face_loads=face_loads(on_flank, system, state.coordinates, skews),
         statics=_statics(assembly, load, shafts),
         lumped=() if load is None else tuple(p.name for p in assembly.scenes[ALONE].ports),
+        still=_still(assembly, load),
     )
 
 
@@ -377,6 +383,14 @@ def _statics(
         return None
     carried = {bearing.name: bearing.load for bearing in shafts[0].bearings}
     return statics(assembly.scenes[ALONE], load, carried)
+
+
+def _still(assembly: Assembly, load: LoadsAlone | None) -> str:
+    """Return the station that a twisted shaft alone turns against; empty where bearings hold it."""
+    if load is None or not any(acting.six[4] for acting in load.acting):
+        return ""
+    scene = assembly.scenes[ALONE]
+    return "" if holders(scene.bearings) else still_station(scene)
 
 
 def _measured(measure: Measure, state: OperatingState, errors: StaticErrors) -> Measured:

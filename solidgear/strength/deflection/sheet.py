@@ -314,6 +314,8 @@ def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
     and of all places of a shaft alone.
     """
     note = "Relative to the unloaded state, in the axes of each shaft's scene, y along it."
+    if deflected.still:
+        note += f" thy: against {deflected.still}, which stands still."
     rows: list[list[Any]] = []
     for shaft in deflected.shafts:
         for name, six in shaft.ports.items():

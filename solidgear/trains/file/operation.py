@@ -4,19 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from math import pi
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any
 
 from pydantic import BeforeValidator, Field, model_validator
 
-from solidgear.core import DOF_NAMES, Model, SceneError, Written
+from solidgear.core import Model, SceneError, Written
+from solidgear.core.scene.gravity import Direction, acceleration
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.load_case import LoadCase
 from solidgear.core.scene.model_table import table_of
 from solidgear.core.scene.units import Speed, Torque
 
-Direction = Literal["x", "-x", "y", "-y", "z", "-z"]
-#: m/s^2, standard gravity (ISO 80000-3)
-GRAVITY = 9.80665
 #: operating points of one train
 MOST_POINTS = 1000
 
@@ -101,11 +99,8 @@ class OperatingPoint(Model):
     @property
     def gravity(self) -> tuple[float, float, float]:
         """(3,) acceleration of weight in the axes of the first shaft's scene, m/s^2; zeros without."""
-        out = [0.0, 0.0, 0.0]
-        if self.weight is not None:
-            size = -GRAVITY if self.weight.startswith("-") else GRAVITY
-            out[DOF_NAMES.index(self.weight[-1])] = size
-        return (out[0], out[1], out[2])
+        x, y, z = acceleration(self.weight).tolist()
+        return (x, y, z)
 
     def torque_of(self, side: str, turns: Mapping[str, float]) -> float:
         """Return the torque of a shaft without losses, N m; `turns` of all shafts in the same time are

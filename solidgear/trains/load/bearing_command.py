@@ -10,7 +10,7 @@ from typing import Annotated
 import typer
 
 from solidgear.show.command import Progress, command
-from solidgear.show.options import Run, SceneFile
+from solidgear.show.options import CaseName, Run, SceneFile
 from solidgear.show.plot import check_ending
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.units import ENGINEERING
@@ -37,12 +37,7 @@ def bearing(
         str | None,
         typer.Option("--speed", help='Speed of the shaft, such as "3000 rpm", for lives in hours.'),
     ] = None,
-    case: Annotated[
-        str | None,
-        typer.Option(
-            "--case", help="Case of the loads of a shaft, by name or number; the first by default."
-        ),
-    ] = None,
+    case: CaseName = None,
     out: Annotated[
         Path | None,
         typer.Option(

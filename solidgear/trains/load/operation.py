@@ -34,6 +34,7 @@ from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
+from solidgear.trains.load.own_weight import weight_alone
 from solidgear.trains.load.planet_loads import carrier_torques, centrifugal_load
 from solidgear.trains.load.state import OperatingState, with_settled_bearings
 from solidgear.trains.load.static_errors import StaticErrors
@@ -157,12 +158,15 @@ class Operating:
     def _settled(self, point: OperatingPoint, start: OperatingState | None) -> OperatingState:
         """Settle the train on the meshes that its shafts have."""
         point = self.assembly.train.told(point)
+        if self.assembly.train.is_one_shaft and point.weight is None:
+            (scene,) = self.assembly.scenes.values()
+            point = point.with_changes(weight=scene.weight)
         assembly, seated = self._on_flank(point.coast)
         forces = mesh_forces(assembly.train, assembly.contacts, point)
         loads, notes = self._loads(assembly, point, forces)
         total = seated.system.load(loads) + centrifugal_load(assembly, seated.system, point)
         if point.weight is not None:
-            total = total + weight(seated.system, point.gravity)
+            total = total + self._weight(assembly, seated.system, point)
         begin = None
         if start is not None and start.point.coast == point.coast:
             begin = start.equilibrium
@@ -194,6 +198,13 @@ class Operating:
             outside=loads,
             notes=tuple(notes),
         )
+
+    def _weight(self, assembly: Assembly, system: System, point: OperatingPoint) -> np.ndarray:
+        """Return the load (N,) of weight on the coordinates of a system."""
+        scenes = [*assembly.scenes.values()]
+        if assembly.train.is_one_shaft:
+            return weight_alone(scenes[0], system, point.gravity)
+        return weight(system, point.gravity)
 
     def _loads(
         self, assembly: Assembly, point: OperatingPoint, forces: dict[str, float]
@@ -247,6 +258,8 @@ def scene_loads(
     if train.is_one_shaft:
         return station_loads(scene, named_case(scene.cases, point.name or None)), []
     loads, word = station_loads(scene), train.shafts[side].scene_load
+    if not loads:  # weight alone, which a train has from the operating point
+        return {}, []
     load = sum(loads.values(), np.zeros(6))
     if word == "added":
         return loads, [f"the [load] of the {side}'s scene is added to the mesh force"]

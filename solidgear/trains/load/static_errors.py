@@ -33,6 +33,8 @@ from solidgear.trains.load.state import OperatingState, with_settled_bearings
 PLACES, TILTS = (0, 1, 2), (3, 5)
 #: growth of a number as the train turns, relative, below which it is rounding
 ROUNDING = 1e-9
+#: motion of a gear over the other one, with the length of the shaft as arm, that symmetry forbids
+FORBIDDEN = 1e-6
 
 
 class StaticErrors:
@@ -78,12 +80,15 @@ class StaticErrors:
         """
         bars, shares = [], []
         for side, shaft in self.assembly.train.shafts.items():
-            for port in [*shaft.gears] or [self.assembly.scenes[side].port.name]:
+            scene = self.assembly.scenes[side]
+            for port in [*shaft.gears] or [scene.port.name]:
                 rows = self.state.system.motion(f"{side}.{port}")
                 moved = rows @ self.state.coordinates
-                for components in (PLACES, TILTS):
-                    size = float(np.linalg.norm(moved[[*components]]))
-                    for row in rows[[*components]] if size else ():
+                arms = {PLACES: 1.0, TILTS: scene.length}
+                sizes = {part: float(np.linalg.norm(moved[[*part]])) for part in arms}
+                least = FORBIDDEN * max(arms[part] * size for part, size in sizes.items())
+                for components, size in sizes.items():
+                    for row in rows[[*components]] if arms[components] * size > least else ():
                         by_shaft = self._by_shaft(row)
                         bars.append(sum(bar for bar, _ in by_shaft.values()) / size)
                         shares.append(_shares(by_shaft))

@@ -15,7 +15,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from solidgear.core import System
+from solidgear.core import Scene, System
 from solidgear.core.scene.acting import carriers, holders
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.train import ALONE
@@ -36,15 +36,15 @@ def held_torques(
     if not torques or not stiffness:
         return {}
     omega, shapes = system.elastic
-    seen = np.array([system.motion(end)[ABOUT] for end in stiffness]) @ shapes / omega
-    turned = seen @ (shapes.T @ system.load(torques) / omega)
+    rotations = np.array([system.motion(end)[ABOUT] for end in stiffness]) @ shapes / omega
+    turned = rotations @ (shapes.T @ system.load(torques) / omega)
     count = len(stiffness)
     matrix = np.zeros((count + 1, count + 1))
-    matrix[:count, :count] = np.diag([1 / k for k in stiffness.values()]) + seen @ seen.T
+    matrix[:count, :count] = np.diag([1 / k for k in stiffness.values()]) + rotations @ rotations.T
     matrix[:count, count], matrix[count, :count] = -1.0, 1.0
     total = sum(load[ABOUT] for load in torques.values())
-    taken = np.linalg.solve(matrix, np.r_[turned, total])[:count]
-    return dict(zip(stiffness, taken.tolist()))
+    torques_held = np.linalg.solve(matrix, np.r_[turned, total])[:count]
+    return dict(zip(stiffness, torques_held.tolist()))
 
 
 def _stiffness(assembly: Assembly) -> dict[str, float]:
@@ -58,15 +58,20 @@ def _stiffness(assembly: Assembly) -> dict[str, float]:
     }
 
 
+def still_station(scene: Scene) -> str:
+    """Return the station of a shaft alone that does not turn where no bearing holds it: that where
+    torques leave, or else the main lumped point.
+    """
+    return carriers(scene)[scene.torque_at or scene.port.name]
+
+
 def turned_back(
     assembly: Assembly, system: System, solved: SystemEquilibrium, held: Mapping[str, float]
 ) -> SystemEquilibrium:
     """Return the same with the torques that bearings take, turned as these let it; without any the
     place where torques leave, or else the main lumped point, does not turn.
     """
-    scene = assembly.scenes[ALONE]
-    still = carriers(scene)[scene.torque_at or scene.port.name]
-    end, angle = f"{ALONE}.{still}", 0.0
+    end, angle = f"{ALONE}.{still_station(assembly.scenes[ALONE])}", 0.0
     load = dict(solved.load)
     if held:
         end = next(iter(held))

@@ -27,7 +27,6 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 import numpy as np
-import scipy.linalg as sla
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.clearance import clearance_range, is_axial
@@ -58,6 +57,7 @@ from solidgear.core.loading import SHAFT
 from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.solve.statics import condense
+from solidgear.core.springs import modes_on_springs
 from solidgear.variants.budget.questions import Question, questions
 
 Progress = Callable[[str], None]
@@ -515,8 +515,8 @@ class ReducedBeam:
         """Return the lowest elastic modes on supports."""
         part, still = self.part, np.zeros((0, self.part.size))
         motion = np.vstack([still, *(part.ports[name].rows for name in supports.ports)])
-        stiffness = np.diag(part.value) + motion.T @ supports.stiffness @ motion
-        value, shapes = sla.eigh(stiffness, part.mass + motion.T @ supports.masses @ motion)
+        mass = part.mass + motion.T @ supports.masses @ motion
+        value, shapes = modes_on_springs(np.diag(part.value), mass, motion.T @ supports.root)
         rigid = supports.unresisted(self.body).shape[1]
         elastic = slice(rigid, rigid + self.count)
         return Shapes(np.sqrt(value[elastic]) / (2 * np.pi), part.expand(shapes[:, elastic]))

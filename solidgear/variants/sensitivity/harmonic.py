@@ -166,9 +166,8 @@ class _States:
         """Add derivatives by shape and material, and the forces of rigid seats, from all cells."""
         work, flat = self.work, self.adjoint.flat
         shape, dshape = reference(ElementQuad1(), work.points)
-        segment = 0
         for part, material, t, dv in work.batches():
-            segment = int(flat.segment[part[0]])
+            segments = flat.segment[part]
             w = self.family.weight(t.x[0], dv)[:, :, None]
             value, g = self.fields(t, part)
             e_trace, e_shear, heavy, stress, lame, mu = self.densities(material, value, g)
@@ -191,9 +190,13 @@ class _States:
             for k, push in enumerate(self.pushes):
                 for j in range(2):
                     np.add.at(push.nodes[j], flat.cells[:, part], force[j, :, :, k])
-                push.lame[segment] -= self.scale[k] * (w[..., 0] * e_trace[..., k]).sum()
-                push.shear[segment] -= self.scale[k] * (w[..., 0] * e_shear[..., k]).sum()
-                push.density[segment] += self.scale[k] * (w[..., 0] * mass[..., k]).sum()
+                for rate, density, sign in (
+                    (push.lame, e_trace, -1.0),
+                    (push.shear, e_shear, -1.0),
+                    (push.density, mass, 1.0),
+                ):
+                    of_cells = (w[..., 0] * density[..., k]).sum(axis=1)
+                    np.add.at(rate, segments, sign * self.scale[k] * of_cells)
             if self.rigid:
                 self._hold(part, material, t, w, value, stress)
         for side in (1, 0):

@@ -23,7 +23,7 @@ from skfem import ElementQuad1
 from solidgear.core.body import Block
 from solidgear.core.body.sections import Sections, hats, through
 from solidgear.core.errors import SolidgearError
-from solidgear.core.kernel.assembly import Pattern, Tabulated, batches, tabulate
+from solidgear.core.kernel.assembly import Pattern, Tabulated, Tabulation, batches
 from solidgear.core.kernel.attachment import Attached, reduced, with_ports
 from solidgear.core.kernel.cell_shapes import Shapes
 from solidgear.core.kernel.lobatto import gauss, gauss_box
@@ -56,6 +56,26 @@ def _products(t: Tabulated) -> np.ndarray:
     return (t.value[:, None] * t.value).reshape(-1, nq).T
 
 
+def _in_each(scalar: sp.csr_matrix, share: np.ndarray, keep: np.ndarray) -> sp.csr_matrix:
+    """Return the matrix of unknowns of which each goes with those of the same component alone, by
+    the matrix of one component and the share (c,) of each, without those that a mask (n c,) leaves
+    out.
+    """
+    places = np.flatnonzero(keep)
+    number = np.cumsum(keep) - 1
+    rows = scalar[places // len(share)]
+    component = np.repeat(places % len(share), np.diff(rows.indptr))
+    column = rows.indices * len(share) + component
+    left = keep[column]
+    ends = np.concatenate([[0], np.cumsum(left)])[rows.indptr]
+    out = sp.csr_matrix(
+        ((rows.data * share[component])[left], number[column[left]], ends),
+        shape=(len(places), len(places)),
+    )
+    out.eliminate_zeros()
+    return out
+
+
 class Work:
     """Tabulated basis, materials and surface integrals shared by the blocks of one body."""
 
@@ -76,19 +96,24 @@ class Work:
             self.point[:] = False
             self.point[self.dofs[:4]] = True
         self.y = np.where(self.point, self.place[1], np.nan)
+        density = np.array([s.material.density for s in scene.segments])[self.flat.segment]
+        self.hats = HatIntegrals(self.shapes, self.dofs, self.order, density)
         self.area = 0.0
+        self._edges: dict[tuple[int, float], Tabulation] = {}  # by direction and value
 
     def batches(self):
         """Yield (cells, material, tabulated basis, area weights (m, nq)), one material and one
         shape of cells at a time.
         """
         bytes_each = 8 * (3 * self.dofs.shape[0] * len(self.weights) + 30 * self.dofs.shape[0] ** 2)
-        for index, segment in enumerate(self.scene.segments):
+        of_segments = [segment.material for segment in self.scene.segments]
+        for material in dict.fromkeys(of_segments):
+            made_of = np.array([other == material for other in of_segments])
             for kind, basis in zip(self.shapes.kinds, self.bases):
-                cells = kind.cells[self.flat.segment[kind.cells] == index]
+                cells = kind.cells[made_of[self.flat.segment[kind.cells]]]
                 for part in batches(cells, bytes_each):
                     t = basis.on(self.shapes.nodes(kind, part))
-                    yield part, segment.material, t, t.det * self.weights
+                    yield part, material, t, t.det * self.weights
 
     def block(self, name: str, components: tuple[int, ...], wanted) -> Block:
         """Build the block of a family of motion, by name, with the ports of stations and their
@@ -101,6 +126,7 @@ class Work:
         # Strains are linear in (phi / r, phi,r, phi,y) of each unknown, in torsion in the last two;
         # one Gram matrix of those functions per element holds every product that occurs.
         used = slice(1 if family.waves == TORSION else 0, 3)
+        value = products = np.zeros(0)
         for part, material, t, dv in self.batches():
             area += dv.sum()
             w = family.weight(t.x[0], dv)
@@ -115,15 +141,15 @@ class Work:
             )
             law = family.stiffness(material)[used][:, :, used].transpose(1, 3, 0, 2)
             stiffness.add(part, law.reshape(c * c, k * k) @ gram)
-            heavy.add(part, material.density * w @ _products(t))
+            if value is not t.value:  # that all batches of one shape share
+                value, products = t.value, _products(t)
+            heavy.add(part, material.density * w @ products)
         self.area = area
-        # the product is written in dense blocks, whose zeros couple directions that mass does not
-        mass = sp.kron(heavy.matrix(), sp.diags(family.share)).tocsr()
-        mass.eliminate_zeros()
         keep = family.free(self.geometry.on_axis).ravel()
         r, y = self.place
         rigid = family.rigid(r, y, self.point.astype(float)).reshape(self.n * c, -1)
-        heavy_left, turns = mass[keep][:, keep], np.tile(family.turns, self.n)[keep, None]
+        heavy_left = _in_each(heavy.matrix(), family.share, keep)
+        turns = np.tile(family.turns, self.n)[keep, None]
         block = Block(
             name,
             components,
@@ -178,10 +204,7 @@ class Work:
 
     def _sections(self, family: Family, keep: np.ndarray) -> Sections:
         """Return the section motions of a block with the unknowns of a mask left."""
-        density = np.array([s.material.density for s in self.scene.segments])[self.flat.segment]
-        full = from_cells(
-            self.shapes, self.dofs, self.order, density, PARTS[family.waves], family.count
-        )
+        full = self.hats.sections(PARTS[family.waves], family.count)
         return through(full, sp.identity(len(keep), format="csc")[:, keep].tocsr())
 
     def seat_cells(self, station):
@@ -194,10 +217,11 @@ class Work:
 
     def on_edge(self, cells, direction: int, value: float):
         """Tabulate the basis on a local edge of straight cells: where a coordinate has a value."""
-        points = np.empty((2, len(self.g)))
-        points[direction], points[1 - direction] = value, self.g
-        nodes = self.flat.points[:, self.flat.cells[:, cells]]
-        return tabulate(CORNERS, nodes, self.element, points)
+        if (direction, value) not in self._edges:
+            points = np.empty((2, len(self.g)))
+            points[direction], points[1 - direction] = value, self.g
+            self._edges[direction, value] = Tabulation(CORNERS, self.element, points)
+        return self._edges[direction, value].on(self.flat.points[:, self.flat.cells[:, cells]])
 
     def surface(self, station, attachment):
         """Return basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a
@@ -254,64 +278,83 @@ PARTS = {
 }
 
 
-def from_cells(
-    shapes: Shapes,
-    dofs: np.ndarray,
-    order: int,
-    density: np.ndarray,
-    parts: tuple[Part, ...],
-    unknowns: int,
-) -> Sections:
-    """Return the sections of a block on meridian cells, by their degrees of freedom (nb, ne) and
-    densities (ne,), kg/m3: one part a component, with so many unknowns at each scalar degree of
-    freedom, numbered together.
+class HatIntegrals:
+    """Integrals of hat functions along the axis over the cells of a meridian, weighted by density
+    and powers of the radius, of which the sections of every block are made; those of the last
+    stations are kept.
     """
-    n = int(dofs.max()) + 1
-    x, w = gauss(order + 2)
-    flat = shapes.flat
-    reach = np.ptp(flat.points[1][flat.cells], axis=0)
 
-    def sections(stations):
-        loads = np.zeros((n, unknowns, len(stations), len(parts)))
-        gram = np.zeros((len(stations), len(parts), len(stations), len(parts)))
+    def __init__(self, shapes: Shapes, dofs: np.ndarray, order: int, density: np.ndarray):
+        self._shapes, self._dofs, self._density = shapes, dofs, density
+        self._n = int(dofs.max()) + 1
+        self._rule = gauss(order + 2)
+        self._kept: tuple[bytes, tuple[dict[int, np.ndarray], dict[int, np.ndarray]]] | None = None
+
+    def on(self, stations: np.ndarray) -> tuple[dict[int, np.ndarray], dict[int, np.ndarray]]:
+        """Return, by the power p of the radius, ``int rho r^p phi h_s`` (n, s) and ``int rho r^p h_s
+        h_t`` (s, s) with the basis phi and hat functions h.
+        """
+        key = stations.tobytes()
+        if self._kept is None or self._kept[0] != key:
+            self._kept = key, self._integrated(stations)
+        return self._kept[1]
+
+    def _integrated(self, stations: np.ndarray):
+        count, (x, w), flat = len(stations), self._rule, self._shapes.flat
+        loads = {power: np.zeros((self._n, count)) for power in (1, 2, 3)}
+        grams = {power: np.zeros((count, count)) for power in (1, 3)}
         # a cell is cut along the axis until no piece is longer than from station to station
+        reach = np.ptp(flat.points[1][flat.cells], axis=0)
         pieces = np.ceil(reach / np.diff(stations).min() - 1e-9).astype(int).clip(1)
-        for count in np.unique(pieces):
-            along = ((np.arange(count)[:, None] + x) / count).ravel()
+        for cut in np.unique(pieces):
+            along = ((np.arange(cut)[:, None] + x) / cut).ravel()
             a, b = np.meshgrid(x, along, indexing="ij")
-            weight = np.outer(w, np.tile(w / count, count)).ravel()
+            weight = np.outer(w, np.tile(w / cut, cut)).ravel()
             points = np.array([a.ravel(), b.ravel()])
-            for cells, t in _tabulated(shapes, pieces == count, points):
-                r, dm = t.x[0].ravel(), (t.det * weight * density[cells, None]).ravel()
-                hat = hats(np.clip(t.x[1].ravel(), stations[0], stations[-1]), stations)
-                value = _at_points(t.value, dofs[:, cells], n)
-                for k, part in enumerate(parts):
-                    mass = part.factor * dm * r**part.weight
-                    field = part.sign * r**part.power
-                    loads[:, part.unknown, :, k] += (
-                        value.T @ hat.multiply((mass * field)[:, None])
-                    ).toarray()
-                    gram[:, k, :, k] += (hat.T @ hat.multiply((mass * field**2)[:, None])).toarray()
-        size = len(stations) * len(parts)
-        return loads.reshape(n * unknowns, size), gram.reshape(size, size)
+            for cells, t in self._tabulated(pieces == cut, points, 2 * count):
+                mass = t.det * weight * self._density[cells, None]
+                hat = hats(np.clip(t.x[1].ravel(), stations[0], stations[-1]), stations).toarray()
+                to_unknowns = _at_cells(self._dofs[:, cells], self._n)
+                for power, load in loads.items():
+                    heavy = hat * (mass * t.x[0] ** power).reshape(-1, 1)
+                    moved = t.value @ heavy.reshape(*t.det.shape, count)
+                    load += to_unknowns @ moved.reshape(-1, count)
+                    if power in grams:
+                        grams[power] += hat.T @ heavy
+        return loads, grams
 
-    return sections
+    def _tabulated(self, wanted: np.ndarray, points: np.ndarray, fields: int):
+        """Yield (cells, tabulated basis) for the cells of a mask, a batch of one shape at a time,
+        with room for some fields more at their points.
+        """
+        bytes_each = 8 * (12 + fields) * points.shape[1]
+        for kind in self._shapes.kinds:
+            basis = self._shapes.tabulation(kind, points)
+            for cells in batches(kind.cells[wanted[kind.cells]], bytes_each):
+                yield cells, basis.on(self._shapes.nodes(kind, cells))
+
+    def sections(self, parts: tuple[Part, ...], unknowns: int) -> Sections:
+        """Return the sections of a block: one part a component, with so many unknowns at each scalar
+        degree of freedom, numbered together.
+        """
+
+        def sections(stations):
+            loads, grams = self.on(stations)
+            count = len(stations)
+            load = np.zeros((self._n, unknowns, count, len(parts)))
+            gram = np.zeros((count, len(parts), count, len(parts)))
+            for k, part in enumerate(parts):
+                load[:, part.unknown, :, k] = (
+                    part.factor * part.sign * loads[part.weight + part.power]
+                )
+                gram[:, k, :, k] = part.factor * grams[part.weight + 2 * part.power]
+            size = count * len(parts)
+            return load.reshape(self._n * unknowns, size), gram.reshape(size, size)
+
+        return sections
 
 
-def _tabulated(shapes: Shapes, wanted: np.ndarray, points: np.ndarray):
-    """Yield (cells, tabulated basis) for the cells of a mask, a batch of one shape at a time."""
-    for kind in shapes.kinds:
-        basis = shapes.tabulation(kind, points)
-        for cells in batches(kind.cells[wanted[kind.cells]], 8 * 12 * points.shape[1]):
-            yield cells, basis.on(shapes.nodes(kind, cells))
-
-
-def _at_points(value: np.ndarray, dofs: np.ndarray, n: int) -> sp.csr_matrix:
-    """Return the values (cells * points, n) of the basis at the points of every cell."""
-    nb, nq = value.shape
-    cells = dofs.shape[1]
-    data = np.broadcast_to(value.T, (cells, nq, nb)).ravel()
-    columns = np.broadcast_to(dofs.T[:, None], (cells, nq, nb)).ravel()
-    return sp.csr_matrix(
-        (data, columns, np.arange(0, cells * nq * nb + 1, nb)), shape=(cells * nq, n)
-    )
+def _at_cells(dofs: np.ndarray, n: int) -> sp.csc_matrix:
+    """Return the sum (n, cells nb) of values of all cells at the unknowns, cell by cell."""
+    ones = np.ones(dofs.size)
+    return sp.csc_matrix((ones, dofs.T.ravel(), np.arange(dofs.size + 1)), (n, dofs.size))
