@@ -1,11 +1,8 @@
 r"""Stress concentration of keyways and cross holes, by 3D solids refined until error bars are met.
 
 Each mesh has smaller elements where the one before had the largest stress of each load. The error
-bar of a factor is the largest of
-
-- its change from the mesh before,
-- the traction left on the free surface where the stress is largest, over nominal stress,
-- 2e-2 of it.
+bar of a factor is the sum of its change from the mesh before and of the traction left on the free surface
+where the stress is largest, over nominal stress; and at least 2e-2 of it.
 
 `python -m validation.campaign notches` holds error bars against finer meshes. Nominal stress is that
 of DIN 743-2: for a keyway that of the plain shaft; for a hole of diameter b that of the section left,
@@ -244,7 +241,7 @@ def _bar(solutions: list[LocalSolution] | tuple[LocalSolution, ...], load: str) 
     if len(solutions) < 2:
         return float("inf")
     change = abs(last.value - solutions[-2].peaks[load].value)
-    return max(change, last.traction, FLOOR * last.value)
+    return max(change + last.traction, FLOOR * last.value)
 
 
 def _turned(angle: float) -> np.ndarray:

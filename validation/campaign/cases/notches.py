@@ -32,7 +32,7 @@ class Notches(Case):
     parts = ((), ("kind",), ("load",))
     details = (("kind", "load"),)
     tag_of_costs = "kind"
-    seeds = (0, 10)
+    seeds = (0, 5)
 
     def options(self, parser: argparse.ArgumentParser) -> None:
         parser.add_argument("--tolerance", type=float, default=0.05)
