@@ -127,7 +127,7 @@ def groove_factors(
     >>> shaft = Segment.cylinder("shaft", length=0.2, diameter=0.04)
     >>> groove = groove_factors("groove", shaft, GrooveShape(1e-3, 1e-3), 0.1)
     >>> f'{groove.factors["bending"].value:.2f}'
-    '2.59'
+    '2.63'
     """
     _refuse(name, segment, shape)
     half = shape.mouth + reach * segment.outer0
