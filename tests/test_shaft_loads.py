@@ -16,6 +16,7 @@ from solidgear.core.loading import as_written
 from solidgear.core.scene.acting import acting_loads
 from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.system.gear_mesh import line_of_action
+from solidgear.cuts.features.keyway import Keyway
 from solidgear.exchange.rexs.export.exporting import exported
 from solidgear.exchange.rexs.importing import imported
 from solidgear.show.remarks import load
@@ -316,6 +317,9 @@ def test_lives_in_all_cases_add_their_damage():
         "half (3000 rpm)",
     ]
     assert result["A"] is result.facts[0]
+    key = Keyway(name="key", segment="rod", position=0.17, length=0.03, width=0.008, depth=0.004)
+    keyed = sg.bearing(catalogued(FULL, HALF).with_changes(features=(key,)))
+    assert [life.duty.hours for life in keyed.lives] == [life.duty.hours for life in result.lives]
     chosen = sg.bearing(catalogued(FULL, HALF), "B", case="2")
     assert chosen.case == "half" and chosen.facts[0].load == pytest.approx(
         result.facts[1].load / 2, rel=0.02, abs=1.0

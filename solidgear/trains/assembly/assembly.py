@@ -33,6 +33,7 @@ from solidgear.core import (
 from solidgear.core.bounds.refining import Meshed, refined
 from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.reduction.craig_bampton import craig_bampton
+from solidgear.core.scene.shaft import feature_labels, resolved
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.core.system.parts import Inertia, Part, Placed, RigidBody
@@ -467,6 +468,27 @@ class Assembly:
             if shaft.matrices is not None:
                 sentences += matrices_cautions(side, shaft.matrices, self.scenes[side])
         return (*sentences, *housing_cautions(self.train, self.places))
+
+    def left_out(self, model: str) -> tuple[str, ...]:
+        """Return the cuts and teeth that a model of revolution leaves out of all shafts, in words."""
+        if LADDER[model].for_features:
+            return ()
+        unfit = [scene for scene in self.scenes.values() if LADDER[model].unfit(scene)]
+        return tuple(feature_labels(resolved(scene)) for scene in unfit)
+
+    def settling(self, model: str) -> Assembly:
+        """Return the same train with shafts as a model has them on which only bearings settle: without
+        cuts, unless it is made for them, and with teeth that act at their ports.
+        """
+        if not self.left_out(model):
+            return self
+        train = self.asked_train
+        shafts = {
+            side: shaft.with_changes(scene=shaft.scene.plain)
+            for side, shaft in train.shafts.items()
+        }
+        meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
+        return replace(self, train=train.with_changes(shafts=shafts, meshes=meshes))
 
     def on_flank(self, coast: bool) -> Assembly:
         """Return the same train with the teeth in contact on one flank: `coast` is True for that

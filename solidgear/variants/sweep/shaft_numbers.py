@@ -18,7 +18,7 @@ from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.lives import lives_in
-from solidgear.trains.load.operation import SHAFT, Operating
+from solidgear.trains.load.operation import Operating
 from solidgear.trains.load.state import OperatingState
 from solidgear.variants.sweep.life_numbers import life_columns, life_numbers
 
@@ -128,7 +128,7 @@ def _across(pair: Sequence[Measured]) -> tuple[float, float | None]:
 def _lives(scene: Scene) -> list[LivesOverPoints]:
     """Return the life of every catalogue bearing of a shaft in all cases of its loads."""
     assembly = Assembly.of(scene, kept=FEW)
-    operating, states = Operating(assembly, SHAFT), list[OperatingState]()
+    operating, states = Operating(assembly), list[OperatingState]()
     for point in _points(assembly):
         states.append(operating.at(point, states[-1] if states else None))
     return lives_in(assembly.train, [states])
