@@ -123,7 +123,8 @@ class SectionForces:
         """
         y, rows = [self.y[0]], [self.left[0]]
         for k, end in enumerate(self.y[1:]):
-            between = np.linspace(self.y[k], end, FINE + 1)[1:-1] if self.spread else []
+            count = FINE if self.spread else 1
+            between = np.linspace(self.y[k], end, count + 1)[1:-1]
             y += [self.y[k], *between, end]
             rows += [self.right[k], *map(self.at, between), self.left[k + 1]]
         return np.array([*y, self.y[-1]]), np.array([*rows, self.right[-1]])
@@ -178,8 +179,8 @@ def _along(
         forces = forces - sum((load.six for load in acting), np.zeros(6))
         after.append(forces)
         names.append(", ".join(load.name for load in acting))
-    sides = [np.where(np.abs(side) > least, side, 0.0) for side in (before, after)]
-    return SectionForces(np.array(places), tuple(names), *sides, spread)
+    left, right = (np.where(np.abs(side) > least, side, 0.0) for side in (before, after))
+    return SectionForces(np.array(places), tuple(names), left, right, spread)
 
 
 def _stationary(forces: SectionForces) -> Iterator[float]:

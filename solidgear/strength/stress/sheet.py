@@ -26,6 +26,7 @@ from solidgear.strength.stress.notch_tables import (
     STRESS,
     drawn_notches,
     headline,
+    over_cases,
     rating,
     safeties,
 )
@@ -109,11 +110,12 @@ def _chart(stressed: StressAtRest, shaft: StressedShaft, units: Units, width: fl
 
 
 def _tables(stressed: StressAtRest, units: Units, all_ratings: bool = True) -> list[Table]:
-    return [
+    tables = [
         table
         for shaft in stressed.shafts
         for table in shaft_tables(stressed, shaft, units, all_ratings)
     ]
+    return [*over_cases(stressed.cases, units), *tables]
 
 
 def shaft_tables(
