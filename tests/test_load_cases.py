@@ -8,10 +8,11 @@ from filleted import STRONG, shoulder
 
 import solidgear as sg
 from solidgear.core.loading import as_written, under_case
-from solidgear.show.remarks import case_sentence, document_under
+from solidgear.show.remarks import case_sentence, document_under, load
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 CATALOGUE = GEOMETRY / "gearbox_catalogue.toml"
+SAYS = 'catalogue bearings settle under the load case "full", one of 2; --case NAME'
 CASES = """
 [[case]]
 name = "full"
@@ -66,17 +67,39 @@ def test_a_case_stands_first_under_which_bearings_settle(file):
         sg.check(GEOMETRY / "gearbox_train.toml", case="light")
 
 
-def test_commands_say_which_case_counts(file, capsys):
-    says = 'catalogue bearings settle under the load case "full", one of 2; --case NAME'
-    quick = ("stiffness", file, "-f", "timoshenko")
-    plain = command(*quick)
-    assert says in plain.stderr
-    chosen = command(*quick, "--case", "light")
-    assert "settle under" not in chosen.stderr and chosen.stdout != plain.stdout
+def test_the_case_that_counts_is_printed_where_none_is_chosen(file, capsys):
+    assert load(file).cases[0].name == "full"
+    assert SAYS in capsys.readouterr().err
+    assert load(file, "light").cases[0].name == "light"
+    assert capsys.readouterr().err == ""
     document_under(file, None)
-    assert says in capsys.readouterr().err
-    first = document_under(file, "light").tables["case"][0]
-    assert first["name"] == "light" and capsys.readouterr().err == ""
+    assert SAYS in capsys.readouterr().err
+    assert document_under(file, "light").tables["case"][0]["name"] == "light"
+    assert capsys.readouterr().err == ""
+
+
+@pytest.mark.long
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("stiffness", "FILE", "-f", "timoshenko"),
+        ("budget", "FILE"),
+        ("check", "FILE"),
+        ("sweep", "FILE", "-f", "timoshenko", "--vary", "bearing.B.position=0.149,0.15"),
+        ("compare", "FILE", "--models", "timoshenko", "--no-renders"),
+    ],
+    ids=lambda words: words[0],
+)
+def test_commands_say_which_case_counts(words, file, monkeypatch):
+    monkeypatch.chdir(file.parent)
+    words = [file if word == "FILE" else word for word in words]
+    plain = command(*words)
+    says = plain.stdout if words[0] == "check" else plain.stderr
+    assert SAYS.partition(";")[0] in " ".join(says.split())
+    out = ("--out", "light.csv") if words[0] == "sweep" else ()
+    chosen = command(*words, "--case", "light", *out)
+    assert chosen.exit_code == plain.exit_code and chosen.stdout != plain.stdout
+    assert "--case NAME" not in chosen.stderr
 
 
 def test_a_case_is_no_choice_where_nothing_settles_under_it(file):
