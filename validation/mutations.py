@@ -1394,6 +1394,14 @@ MUTATIONS = (
         "tests/test_section_forces.py::test_a_beam_on_two_supports_is_the_textbook_one",
     ),
     Mutation(
+        "section forces: spread weight without its arm",
+        "solidgear/strength/stress/spread_weight.py",
+        "SpreadWeight.between",
+        "moment - about * force",
+        "np.zeros(6)",
+        "tests/test_section_forces.py::test_a_rod_under_its_weight_bends_as_in_the_textbook",
+    ),
+    Mutation(
         "stress of a train: weight of the gear in the axes of the pinion",
         "solidgear/strength/stress/at_rest.py",
         "_on_shafts",

@@ -289,19 +289,13 @@ def _rating(
     )
 
 
-def least_safety(
-    scene: Scene, stress: ShaftStress, forces: SectionForces, conditions: Conditions
-) -> float:
-    """Return the least safety of all notches under other section forces; infinite without ratings."""
-    drawn, _ = drawn_stresses(scene, forces, conditions)
-    safeties = [notch.rating.worst for notch in drawn if notch.rating is not None]
-    for notch in stress.notches:
-        if notch.rating is not None:
-            segment = scene.segments[notch.found.corner.owner]
-            under = conditions.levels(_nominal_at(notch.found, forces))
-            fillet = FilletNotch(notch.found, notch.large)
-            safeties.append(_rating(scene, segment, fillet, under, conditions).worst)
-    return min(safeties, default=np.inf)
+def rating_under(
+    scene: Scene, notch: Notch, forces: SectionForces, conditions: Conditions
+) -> Rating:
+    """Rate a fillet that is rated under other section forces."""
+    under = conditions.levels(_nominal_at(notch.found, forces))
+    segment = scene.segments[notch.found.corner.owner]
+    return _rating(scene, segment, FilletNotch(notch.found, notch.large), under, conditions)
 
 
 def _nominal_at(fillet: FilletFactors, forces: SectionForces) -> NominalStress:

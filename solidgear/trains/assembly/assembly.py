@@ -33,7 +33,6 @@ from solidgear.core import (
 from solidgear.core.bounds.refining import Meshed, refined
 from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.reduction.craig_bampton import craig_bampton
-from solidgear.core.scene.shaft import feature_labels, resolved
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.core.system.parts import Inertia, Part, Placed, RigidBody
@@ -471,20 +470,20 @@ class Assembly:
 
     def left_out(self, model: str) -> tuple[str, ...]:
         """Return the cuts and teeth that a model of revolution leaves out of all shafts, in words."""
-        if LADDER[model].for_features:
-            return ()
-        unfit = [scene for scene in self.scenes.values() if LADDER[model].unfit(scene)]
-        return tuple(feature_labels(resolved(scene)) for scene in unfit)
+        labels = (LADDER[model].left_out(scene) for scene in self.scenes.values())
+        return tuple(label for label in labels if label)
 
     def settling(self, model: str) -> Assembly:
         """Return the same train with shafts as a model has them on which only bearings settle: without
         cuts, unless it is made for them, and with teeth that act at their ports.
         """
-        if not self.left_out(model):
-            return self
         train = self.asked_train
+        if not self.left_out(model) and not any(mesh.local_harmonics for mesh in train.meshes):
+            return self
         shafts = {
             side: shaft.with_changes(scene=shaft.scene.plain)
+            if LADDER[model].left_out(shaft.scene)
+            else shaft
             for side, shaft in train.shafts.items()
         }
         meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)

@@ -11,8 +11,9 @@ from typing import Annotated
 import typer
 
 from solidgear.show.command import command
-from solidgear.show.options import AUTO, BY_MODEL, AutoChoice, Run, relative
+from solidgear.show.options import AUTO, BY_MODEL, AutoChoice, CaseName, Run, relative
 from solidgear.show.plot import Make
+from solidgear.show.remarks import document_under
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.units import ENGINEERING, Units
@@ -92,11 +93,12 @@ def optimise(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="Folder for a page, data, table and chart.")
     ] = None,
+    case: CaseName = None,
     run: Run,
 ) -> None:
     present(
         lambda progress: optimised(
-            scene,
+            document_under(scene, case),
             vary or (),
             goal,
             keep or (),

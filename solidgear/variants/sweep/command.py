@@ -13,10 +13,10 @@ import typer
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemainingColumn
 from rich.progress import Progress as ProgressBar
 
-from solidgear.core import document_of
 from solidgear.show.command import Group, Progress, command, console
-from solidgear.show.options import AUTO, MODEL, Chosen, Run, options, refuse, relative
+from solidgear.show.options import AUTO, MODEL, CaseName, Chosen, Run, options, refuse, relative
 from solidgear.show.plot import FORMATS, WIDE, check_ending
+from solidgear.show.remarks import document_under
 from solidgear.show.sheet import present, write_page
 from solidgear.trains.options import Pair, Reduction, models_of, of_shafts
 from solidgear.variants.sweep.design import Design
@@ -215,12 +215,13 @@ def sweep(
     pair: Pair,
     train_rows: OfTrain,
     reduced: Reduction,
+    case: CaseName = None,
     run: Run,
 ) -> None:
     chart = train_rows.chart
     if chart is not None:
         check_ending(chart, (*FORMATS, PAGE))
-    document = document_of(scene)
+    document = document_under(scene, case)
     if document.describes_train:
         of_shaft = {
             "--model": model.name != AUTO,
