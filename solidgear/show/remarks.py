@@ -6,9 +6,18 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from solidgear.core import Body, Document, OpenNumbers, Scene, Source, addition, explained
+from solidgear.core import (
+    Body,
+    Document,
+    OpenNumbers,
+    Scene,
+    Source,
+    addition,
+    as_written,
+    explained,
+)
 from solidgear.core import load as read
-from solidgear.core.loading import as_written, under_case
+from solidgear.core.loading import under_case
 
 
 def load(source: Source, case: str | None = None) -> Scene:
