@@ -254,13 +254,16 @@ def sensitivities(
 
 
 def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:
-    """Return the strongest first; negligible ones, unless by a length of zero, as zero."""
+    """Return the strongest first, equal ones as in the file; negligible ones, unless by a length of
+    zero, as zero.
+    """
     least = NOTHING * max((abs(d.elasticity) for d in rows), default=0.0)
     cleaned = [
         replace(d, by=0.0, elasticity=0.0) if d.at and abs(d.elasticity) <= least else d
         for d in rows
     ]
-    return tuple(sorted(cleaned, key=lambda d: -abs(d.elasticity)))
+    # rounding does not rank: springs of a round shaft along x and along z are equal
+    return tuple(sorted(cleaned, key=lambda d: -float(f"{abs(d.elasticity):.6g}")))
 
 
 def _supported(scene: Scene, model: str) -> None:
