@@ -303,6 +303,11 @@ class Catalogue(Model):
         if "support" in data:
             reason = "belongs to the bearing, not to its catalogue data"
             raise SceneError(reason, path=("support",), value=show(data["support"]))
+        if "designation" in data and not (
+            isinstance(data["designation"], str) and (data["designation"] or "kind" in data)
+        ):
+            reason = 'must be a text in quotes, such as "6208", or left out'
+            raise SceneError(reason, path=("designation",), value=show(data["designation"]))
         data = with_listed_by_variable(data, Catalogue)
         if (
             isinstance(data.get("designation"), str)

@@ -24,6 +24,9 @@ def complete(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     if not isinstance(name, str):
         reason = 'names the file of a list of bearings, such as "my_bearings.csv"'
         raise SceneError(reason, path=("bearings",), value=show(name))
+    if not (folder / name).is_file():
+        reason = "there is no such file; name a list of bearings (CSV), beside this file"
+        raise SceneError(reason, path=("bearings",), value=show(name))
     listed = read_list(os.fspath(folder / name), Catalogue)
     out["bearing"] = [_completed(table, listed) for table in bearings]
     return out

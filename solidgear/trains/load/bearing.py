@@ -81,7 +81,7 @@ def bearing(
     *,
     load: str | Mapping[str, Any] | None = None,
     speed: str | None = None,
-    case: str | None = None,
+    case: str | int | None = None,
 ) -> SolvedBearings:
     """Catalogue bearings: stiffness at load, load of every element, pressure, life; of a train with
     an operation lives over its points, and of a shaft over the cases of its loads.
