@@ -436,7 +436,8 @@ class Scene(Displayed, Model):
 
         Parameters
         ----------
-        name : str
+        name : str or int
+            Its name, or its number from one.
 
         Returns
         -------

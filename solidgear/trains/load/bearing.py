@@ -97,7 +97,7 @@ def bearing(
     speed : str, optional
         Of a shaft: its speed, such as ``"3000 rpm"``, for lives in hours; by default that of the
         case.
-    case : str, optional
+    case : str or int, optional
         Of a shaft: case of its loads, by name or number; by default the first.
 
     Returns
