@@ -312,7 +312,8 @@ class Catalogue(Model):
         if (
             isinstance(data.get("designation"), str)
             and data["designation"]
-            and not data.get("listed")
+            # a file of another program leaves out what the designation gives, and keeps the list
+            and not ("kind" in data and data.get("listed"))
         ):
             data = _with_boundary(data)
         super().__init__(**data)
