@@ -218,7 +218,16 @@ SOLIDS = ("harmonic", "solid")
 OVERHUNG, STRADDLE = (
     sg.load(ROOT / "geometry" / f"pinion_{name}.toml") for name in ("overhung", "straddle")
 )
+CATALOGUE = sg.load(ROOT / "geometry" / "gearbox_catalogue.toml")
+FULL, LIGHT_LOAD = sg.LoadCase(name="full"), sg.LoadCase(name="light", factors={"load": 0.5})
 CASES = {
+    "one of two load cases": Case(
+        "load_case",
+        'under the load case "full", one of 2',
+        CATALOGUE.with_changes(cases=(FULL, LIGHT_LOAD)),
+        CATALOGUE.with_changes(cases=(FULL,)),
+        level="fact",
+    ),
     "E in GPa read as Pa": Case(
         "units", "E in Pa of segment 'part 0'", slipped(E=1e-09), slipped(E=0.01)
     ),

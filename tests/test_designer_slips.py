@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.loading import as_written
+from solidgear.core import as_written
 from solidgear.strength.stress.shaft import sharp_corners
 
 BEARING = {"catalogue": {"designation": "6208"}, "seat_width": "18 mm"}

@@ -1,20 +1,26 @@
 """Section forces of a free shaft, nominal stress, and loads that are no equilibrium."""
 
+from pathlib import Path
+
 import numpy as np
 import pytest
 from filleted import shoulder
 
-from solidgear import PointMass, SolidgearError
+import solidgear as sg
+from solidgear import PointMass, Segment, SolidgearError
+from solidgear.core import Outline
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.strength.stress.nominal import CrossSection, nominal_rows, nominal_stress
 from solidgear.strength.stress.section_forces import (
     Load,
+    forces_of,
     move_load,
     on_ports,
     section_forces,
-    weight,
 )
+from solidgear.strength.stress.spread_weight import SpreadWeight
 
+GEOMETRY = Path(__file__).parent.parent / "geometry"
 LENGTH = 0.6
 
 
@@ -108,12 +114,66 @@ def test_weight_is_that_of_the_segments_and_masses():
     scene = shoulder(bore=0.02).with_changes(
         masses=(PointMass(name="disc", mass=3.0, on="gear", offset=[0.0, 0.01, 0.0]),)
     )
-    loads = weight(scene, [0, 0, -9.81])
-    total = sum(move_load(load.six, load.y, 0.0) for load in loads)
     mass = mass_properties(scene.outline)
     force, arm = mass.mass + 3.0, mass.mass * mass.centre + 3.0 * (scene.port.y + 0.01)
-    assert total[2] == pytest.approx(-9.81 * force, rel=1e-12)
-    assert total[3] == pytest.approx(-9.81 * arm, rel=1e-12)
+    a, b = (bearing.y for bearing in scene.bearings)
+    rear = 9.81 * (arm - a * force) / (b - a)
+    up = {"A": 9.81 * force - rear, "B": rear}
+    found = forces_of(scene, {n: [0, 0, z, 0, 0, 0] for n, z in up.items()}, [0, 0, -9.81])
+    assert found.right[0].tolist() == found.right[-1].tolist() == [0.0] * 6
+    assert "weight of disc" in found.names
+
+
+def test_a_rod_under_its_weight_bends_as_in_the_textbook():
+    """q l^2 / 8 in the middle of two supports, less q a^2 / 2 by what overhangs; N hangs in y."""
+    q, over, span = 12.0, 0.05, 0.5
+    rod = Outline([Segment.cylinder("rod", length=0.6, diameter=0.03)])
+    line = q / mass_properties(rod).mass * 0.6
+    spread = SpreadWeight(rod, line * np.array([0.0, 0.5, -1.0]))
+    held = np.array([0.0, -0.5 * q * 0.6, q * 0.3, 0.0, 0.0, 0.0])
+    found = section_forces(
+        [Load("A", over, held), Load("B", over + span, held * [1, 0, 1, 1, 1, 1])], 0.6, spread
+    )
+    middle = q * span**2 / 8 - q * over**2 / 2
+    assert found.largest_moment == pytest.approx(middle, rel=1e-12)
+    assert found.peak == pytest.approx(0.3, abs=1e-6)
+    for y in (0.1, 0.33):
+        moment = q * 0.3 * (y - over) - q * y**2 / 2
+        shear, tension = q * 0.3 - q * y, 0.5 * q * (0.6 - y)
+        assert found.at(y)[[1, 2, 3]] == pytest.approx([tension, -shear, moment], rel=1e-12)
+    (row,) = (row for row in nominal_rows(rod.segments, found) if row.names == "largest M")
+    assert np.hypot(row.forces[3], row.forces[5]) == pytest.approx(middle, rel=1e-12)
+
+
+def test_the_sum_of_discs_is_the_weight_of_cones_and_fillets():
+    scene = sg.load(GEOMETRY / "pinion_filleted.toml")
+    spread = SpreadWeight(scene.outline, np.array([0.0, 0.0, -9.81]))
+    places = np.linspace(0.0, scene.length, 200_001)
+    middles = (places[1:] + places[:-1]) / 2
+    area = np.zeros_like(middles)
+    for piece in scene.outline.pieces:
+        inside = (middles > piece.y0) & (middles < piece.y1)
+        share = (middles[inside] - piece.y0) / (piece.y1 - piece.y0)
+        radius = piece.r0 + share * (piece.r1 - piece.r0)
+        if piece.corner and piece.corner.centre:
+            r, y = piece.corner.centre
+            reach = piece.corner.radial**2 - (middles[inside] - y) ** 2
+            radius = r - piece.corner.out * np.sqrt(reach)
+        area[inside] += (1 if piece.surface == "outer" else -1) * np.pi * radius**2
+    line = 9.81 * scene.segments[0].material.density * area * np.diff(places)
+    for lo, hi in ((0.0, scene.length), (0.011, 0.0617)):
+        cut = (middles > lo) & (middles < hi)
+        six = spread.between(lo, hi, about=hi)
+        assert six[2] == pytest.approx(-line[cut].sum(), rel=1e-4)
+        assert six[3] == pytest.approx(-(line * (middles - hi))[cut].sum(), rel=1e-4)
+    arc = next(p.corner for p in scene.outline.pieces if p.corner and p.corner.centre)
+    lo, hi = arc.span[0], sum(arc.span) / 2  # half of a fillet
+    cut = (middles > lo) & (middles < hi)
+    assert spread.between(lo, hi, about=0.0)[2] == pytest.approx(-line[cut].sum(), rel=2e-3)
+    whole = mass_properties(scene.outline)
+    weight = spread.between(0.0, scene.length, about=0.0)
+    assert weight[2] == pytest.approx(-9.81 * whole.mass, rel=1e-13)
+    assert weight[3] == pytest.approx(-9.81 * whole.mass * whole.centre, rel=1e-13)
 
 
 def test_nominal_stress_stands_on_both_sides_of_loads_and_steps():

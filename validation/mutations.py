@@ -104,7 +104,7 @@ MUTATIONS = (
         "ratings",
         "bearings ** ROW_POWER[data.balls]",
         "bearings",
-        "tests/test_bearing_life.py::test_worked_examples_of_makers",
+        "tests/test_manual.py::test_case[printed_pair_rating-A]",
     ),
     Mutation(
         "life: f_0 without the outer ring",
@@ -1394,6 +1394,14 @@ MUTATIONS = (
         "tests/test_section_forces.py::test_a_beam_on_two_supports_is_the_textbook_one",
     ),
     Mutation(
+        "section forces: spread weight without its arm",
+        "solidgear/strength/stress/spread_weight.py",
+        "SpreadWeight.between",
+        "moment - about * force",
+        "np.zeros(6)",
+        "tests/test_section_forces.py::test_a_rod_under_its_weight_bends_as_in_the_textbook",
+    ),
+    Mutation(
         "stress of a train: weight of the gear in the axes of the pinion",
         "solidgear/strength/stress/at_rest.py",
         "_on_shafts",
@@ -1456,7 +1464,7 @@ MUTATIONS = (
         "Section.nominal",
         "section.second_moment - cubes / 12",
         "section.second_moment",
-        "tests/test_notches_norm.py::test_a_cross_hole",
+        "tests/test_manual.py::test_case[printed_norm_cross_hole-A]",
     ),
 )
 

@@ -13,12 +13,20 @@ from solidgear.comparison.models import compare as compared
 from solidgear.comparison.page.sheet import sheet
 from solidgear.comparison.page.write import SHEET, Pictures
 from solidgear.core import ELEMENTS, LADDER, SolidgearError, is_train, listed
-from solidgear.core import load as read
 from solidgear.core.machine.start import BEGUN
 from solidgear.datasheet.messages import LanguageChoice
 from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
-from solidgear.show.options import MODEL, SceneFile, Shown, options_by_name, refuse, relative
+from solidgear.show.options import (
+    MODEL,
+    CaseName,
+    SceneFile,
+    Shown,
+    options_by_name,
+    refuse,
+    relative,
+)
+from solidgear.show.remarks import load
 from solidgear.show.render import Drawing
 from solidgear.show.sheet import Sheet, present
 
@@ -113,6 +121,7 @@ def compare(
             "of the file's tolerance.",
         ),
     ] = None,
+    case: CaseName = None,
     run: Shown,
 ) -> None:
     of_one_shaft = {
@@ -134,7 +143,7 @@ def compare(
 
         refuse({"--sheet": bool(sheet_language)}, "one file; run solidgear sheet for each of two")
         mix, of_trains["--tol"] = Pair(pinion or MODEL, gear or MODEL, shafts), tol is not None
-        compare_two([scene, *more], out, mix, mesh, tol, run, of_one_shaft, of_trains)
+        compare_two([scene, *more], out, mix, mesh, tol, case, run, of_one_shaft, of_trains)
         return
     refuse(of_trains, f"two trains, and {scene} is one, of which every model is solved")
     if is_train(scene):
@@ -142,6 +151,7 @@ def compare(
         from solidgear.trains.judge.command import compare_train
         from solidgear.trains.options import Reduced
 
+        refuse({"--case": case is not None}, f"a shaft, and {scene} is a train")
         pages = [] if sheet_language is None else [sheet_of(scene, str(sheet_language))]
         compare_train(scene, out, Reduced(tol=tol), renders, run, of_one_shaft)
         for page in pages:
@@ -152,7 +162,7 @@ def compare(
             f"--tol is for trains, and {scene} is one shaft: write tolerance under [ask] in the file"
         )
 
-    loaded = read(scene)
+    loaded = load(scene, case)
     names = tuple(m.strip() for m in models.split(",") if m.strip())
     check_models(names)
     chosen = options_by_name(settings, LADDER.bodies, "model", "solid.around=32")

@@ -14,7 +14,7 @@ from solidgear.core import LADDER, SolidgearError
 from solidgear.core import modes as solve
 from solidgear.show.command import command
 from solidgear.show.folder import prepare
-from solidgear.show.options import Choice, Fixed, SceneFile
+from solidgear.show.options import CaseName, Choice, Fixed, SceneFile
 from solidgear.show.page_parts import data_uri
 from solidgear.show.remarks import load
 from solidgear.show.render import Drawn, render_modes
@@ -40,12 +40,13 @@ def render(
     beside: Annotated[
         Choice | None, typer.Option(help="A second model in the page of --turn, side by side.")
     ] = None,
+    case: CaseName = None,
 ) -> None:
     if beside and not turn:
         raise SolidgearError(
             f"--beside {beside}: two models need the page of --turn; add --turn model.html"
         )
-    loaded = load(scene)
+    loaded = load(scene, case)
     drawn = []
     for chosen in [model, *([Fixed(beside)] if beside not in (None, model.name) else [])]:
         body = chosen.body(loaded)

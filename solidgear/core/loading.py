@@ -16,7 +16,8 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core.errors import SceneError, SolidgearError
 from solidgear.core.registry import addition
 from solidgear.core.scene import file
-from solidgear.core.scene.document import Source, document_of, name_of_source
+from solidgear.core.scene.document import Document, Source, document_of, name_of_source
+from solidgear.core.scene.load_rules import named_case
 from solidgear.core.scene.model import Scene
 from solidgear.core.scene.tables import parts
 
@@ -73,6 +74,25 @@ def as_written(source: Source) -> Scene:
         return source
     document = document_of(source)
     return scene_of(document.tables, document.path, alone=False).read_from(document)
+
+
+def under_case(source: Source, case: str | None) -> Document:
+    """Return the document of a scene with the case of a name or number first, under which catalogue
+    bearings settle; unchanged without a name. Refused for a train.
+    """
+    document = document_of(source)
+    if case is None:
+        return document
+    if document.describes_train:
+        raise SolidgearError(
+            f"`case` is for a shaft, and {name_of_source(source)} is a train: give `point`"
+        )
+    with explained(document.path, document.tables):
+        scene = file.scene_of(dict(document.tables), document.path, part_of)
+        first = [c.name for c in scene.cases].index(named_case(scene.cases, case).name)
+    tables = list(document.tables["case"])
+    tables.insert(0, tables.pop(first))
+    return Document(dict(document.tables) | {"case": tables}, document.path)
 
 
 def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:

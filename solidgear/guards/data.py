@@ -10,6 +10,7 @@ import numpy as np
 from solidgear.core import DOF_NAMES, Scene, listed
 from solidgear.core.scene.support import RIGID
 from solidgear.guards.notice import Notice, Notices, slip_in_units
+from solidgear.show.remarks import case_sentence
 
 if TYPE_CHECKING:
     from solidgear.guards.probe import Probe
@@ -25,6 +26,12 @@ SOUND = {
     "lever sqrt(tilt / radial stiffness) over d": (0.03, 2.0),
     "first bending in Hz": (1.0, 2e5),
 }
+
+
+def load_case(probe: Probe) -> Notices:
+    """Yield the case of several under which bearings settle."""
+    if sentence := case_sentence(probe.whole):
+        yield Notice("fact", (), sentence)
 
 
 def units(probe: Probe) -> Notices:

@@ -17,6 +17,7 @@ from solidgear.guards.probe import Probe
 GUARDS: dict[str, Callable[[Probe], Notices]] = {
     guard.__name__: guard
     for guard in (
+        data.load_case,
         data.units,
         data.doubtful_data,
         data.free_motions,

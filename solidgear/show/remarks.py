@@ -6,21 +6,60 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 
-from solidgear.core import Body, OpenNumbers, Scene, Source, addition, explained
+from solidgear.core import (
+    Body,
+    Document,
+    OpenNumbers,
+    Scene,
+    Source,
+    addition,
+    as_written,
+    explained,
+)
 from solidgear.core import load as read
+from solidgear.core.loading import under_case
 
 
 def load(source: Source, case: str | None = None) -> Scene:
-    """Read a scene, whose bearings settle under a case of its loads, by default the first, and print
-    doubts about the file of its part.
+    """Read a scene, whose bearings settle under a case of its loads, by default the first of several,
+    which is printed, and print doubts about the file of its part.
     """
     scene = read(source)
     if case is not None:
         with explained(source):
             scene = scene.with_case(case).settled
+    else:
+        _print_case(scene)
     for sentence in scene.body.doubts(scene.material) if scene.body is not None else ():
         print(f"caution: {sentence}", file=sys.stderr)
     return scene
+
+
+def document_under(source: Source, case: str | None) -> Document:
+    """Return the document of a scene with a case of its loads first, or as it is, and print the first
+    of several where none is given.
+    """
+    document = under_case(source, case)
+    if case is None and not document.describes_train and len(document.tables.get("case", ())) > 1:
+        _print_case(as_written(document))
+    return document
+
+
+def _print_case(scene: Scene) -> None:
+    if sentence := case_sentence(scene):
+        print(f"{sentence}; --case NAME takes another", file=sys.stderr)
+
+
+def case_sentence(scene: Scene) -> str:
+    """Return the sentence on which case of several catalogue bearings settle under; empty where there
+    is no choice.
+    """
+    if len(scene.cases) < 2 or not any(b.catalogue is not None for b in scene.bearings):
+        return ""
+    return (
+        f'catalogue bearings settle under the load case "{scene.cases[0].name}", one of '
+        f"{len(scene.cases)}"
+    )
 
 
 def cautions(scene: Scene, body: Body) -> list[str]:

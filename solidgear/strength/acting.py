@@ -14,12 +14,12 @@ from solidgear.core import (
     SceneError,
     SolidgearError,
     Source,
+    as_written,
     explained,
     is_train,
     name_of_source,
     show,
 )
-from solidgear.core.loading import as_written
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group
 from solidgear.show.options import CaseName, refuse

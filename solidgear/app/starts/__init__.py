@@ -10,6 +10,7 @@ STARTS = {
     "straddle": "bevel pinion between two bearings, and a third one behind",
     "rotor": "motor rotor: a stack of a second material, and a fan as a rigid mass",
     "gearbox": "gearbox shaft of eight segments on two bearings",
+    "countershaft": "shaft with belt, gear and coupling on catalogue bearings, in two load cases",
     "helical": "train of two helical gears on catalogue bearings",
     "bevel": "train of a spiral bevel pair",
 }

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+from functools import partial
 from pathlib import Path
 
 from solidgear.comparison.two.study import are_trains, beside
@@ -27,6 +28,7 @@ def compare_two(
     mix: Pair,
     mesh: str | None,
     tol: float | None,
+    case: str | None,
     run: Shown,
     options: dict[str, bool],
     of_trains: dict[str, bool],
@@ -35,6 +37,8 @@ def compare_two(
     and of trains were given.
     """
     trains = _are_trains(files, options, of_trains)
+    if trains:
+        refuse({"--case": case is not None}, "shafts, and both files are trains")
     a, b = map(str, files)
     if a == b or (os.path.exists(a) and os.path.exists(b) and os.path.samefile(a, b)):
         same = f"{a} is given twice" if a == b else f"{a} and {b} are one file"
@@ -44,9 +48,11 @@ def compare_two(
         say(json.dumps(data) if run.as_json else sentence)
         return
 
+    read = partial(load, case=case)
+
     def study(progress: Progress) -> Sheet:
         first, second = files
-        pair = beside(first, second, mix.models, mesh=mesh, tol=tol, progress=progress, read=load)
+        pair = beside(first, second, mix.models, mesh=mesh, tol=tol, progress=progress, read=read)
         progress("report")
         return pair.sheet(units_named(run.units))
 

@@ -102,5 +102,5 @@ def _ask_for_words(load: Any, kind: str) -> None:
             continue
         if all(getattr(load, word) is None for word in needed):
             reason = f"this key is missing; {A_KIND[kind]} needs {' or '.join(needed)}"
-            reason += f" with {first}" * bool(first)
+            reason += f" with {first}" if first else ""
             raise SceneError(reason, path=(needed[0],))

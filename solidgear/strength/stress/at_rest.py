@@ -16,11 +16,12 @@ import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core import LADDER, Scene, Sheeted, listed
+from solidgear.core import LADDER, Scene, Sheeted, SolidgearError, listed
 from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
 from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
+from solidgear.strength.stress.cases import CaseStress, case_stress, least_rated
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.duty import DutyForces, cycles_of
 from solidgear.strength.stress.norm.steels import strength_of
@@ -29,10 +30,10 @@ from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, 
 from solidgear.strength.stress.shaft import (
     ShaftStress,
     check_tolerance,
-    least_safety,
     local_stress,
     shaft_stress,
 )
+from solidgear.strength.stress.solid_notches import FINEST_LOCAL, SolidNotch, solid_notches
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
@@ -73,6 +74,9 @@ class StressedShaft:
     open: Mapping[str, tuple[float, float]]  #: the same of the amplitude on each fillet, Pa
     #: the same of the least safety of all notches; None of a duty table, or without ratings
     open_safety: tuple[float, float] | None = None
+    solids: tuple[SolidNotch, ...] = ()  #: grooves, and keyways and cross holes where asked for
+    #: sentences on features that no solid gives stress to
+    without_solid: tuple[str, ...] = ()
 
     @property
     def weak(self) -> tuple[str, ...]:
@@ -90,9 +94,15 @@ class StressSettings:
     tolerance: float = ENOUGH  #: relative error bar of form factors at which their meshes stop
     conditions: Conditions = Conditions()  #: of the rating by DIN 743
     duty: bool = False  #: whether ratings are over the duty table
+    #: the same of 3D solids at keyways and cross holes; None for no such solids
+    local: float | None = None
 
     def __post_init__(self) -> None:
         check_tolerance(self.tolerance)
+        if self.local is not None and not FINEST_LOCAL <= self.local < 1:
+            raise SolidgearError(
+                f"local = {self.local}: give a relative error bar of 3D solids from {FINEST_LOCAL:g} to 1"
+            )
 
 
 @dataclass(frozen=True)
@@ -118,12 +128,16 @@ class StressAtRest(Sheeted):
     cautions: tuple[str, ...] = ()  #: beside the remarks of each shaft
     #: labels of the points of the duty table that ratings are over; empty where they are of the loads
     duty: tuple[str, ...] = ()
+    #: of a shaft alone with several cases of its loads
+    cases: tuple[CaseStress, ...] = ()
 
     @property
     def reached(self) -> bool:
         """Return whether the error bars of all form factors are within the tolerance."""
         notches = [notch for shaft in self.shafts for notch in shaft.found.notches]
-        return all(notch.found.widest <= self.asked.tolerance for notch in notches)
+        solids = [notch for shaft in self.shafts for notch in shaft.solids]
+        of_fillets = all(notch.found.widest <= self.asked.tolerance for notch in notches)
+        return of_fillets and all(notch.reached for notch in solids)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data in SI that JSON can hold."""
@@ -149,8 +163,12 @@ def stress_at_rest(
     """
     load = loads_alone(assembly.train, point)
     progress(model)
-    train = _with_scenes(assembly.train, filleted)
-    settling = replace(assembly, train=_settling_train(train, model))
+    rounded = {
+        side: shaft.with_changes(scene=filleted(shaft.scene))
+        for side, shaft in assembly.train.shafts.items()
+    }
+    train = assembly.train.with_changes(shafts=rounded)
+    settling = replace(assembly, train=train).settling(model)
     usual = Operating(settling, model).at(point)
 
     def acting(choice: Choice) -> dict[str, ShaftLoads]:
@@ -159,6 +177,8 @@ def stress_at_rest(
         return _on_shafts(settling, state)
 
     duty = _duty(train, settling, model, asked) if asked.duty else {}
+    several = train.is_one_shaft and len(train.operation) > 1
+    at_points = _at_points(train, settling, model) if several and not asked.duty else []
     shafts, open_by = _shafts(train, acting, asked, duty, progress)
     files = {side: shaft.scene.body for side, shaft in assembly.train.shafts.items()}
     left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
@@ -172,6 +192,7 @@ def stress_at_rest(
         open_by=open_by,
         cautions=(*left_out, *usual.notes, *settling.data_cautions, *torque),
         duty=tuple(each.label for each in train.operation) if asked.duty else (),
+        cases=tuple(_cases(train.operation, at_points, shafts[0], asked.conditions)),
     )
 
 
@@ -181,14 +202,37 @@ def _duty(
     """Return section forces and turns of every shaft over the points of the duty table."""
     turns = cycles_of(train, asked.conditions)
     out: dict[str, list[DutyForces]] = {side: [] for side in turns}
-    operating = Operating(settling, model)
-    state: OperatingState | None = None
-    for k, each in enumerate(train.operation):
-        state = operating.at(each, state)
-        for side, acting in _on_shafts(settling, state).items():
-            forces = forces_of(train.shaft(side), acting.loads, acting.gravity)
-            out[side].append(DutyForces(each.label, forces, turns[side][k]))
+    for k, (point, by_side) in enumerate(zip(train.operation, _at_points(train, settling, model))):
+        for side, forces in by_side.items():
+            out[side].append(DutyForces(point.label, forces, turns[side][k]))
     return out
+
+
+def _at_points(train: Train, settling: Assembly, model: str) -> list[dict[str, SectionForces]]:
+    """Return section forces of every shaft at all points of a train, or in all cases of a shaft."""
+    operating = Operating(settling, model)
+    out, state = [], None
+    for point in train.operation:
+        state = operating.at(point, state)
+        acting = _on_shafts(settling, state)
+        out.append(
+            {
+                side: forces_of(train.shaft(side), loads.loads, loads.gravity)
+                for side, loads in acting.items()
+            }
+        )
+    return out
+
+
+def _cases(
+    points: Sequence[OperatingPoint],
+    at_points: Sequence[dict[str, SectionForces]],
+    shaft: StressedShaft,
+    conditions: Conditions,
+) -> Iterator[CaseStress]:
+    """Yield the stress of a shaft alone in all of its cases."""
+    for point, by_side in zip(points, at_points):
+        yield case_stress(point.label, shaft.scene, shaft.found, by_side[ALONE], conditions)
 
 
 def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
@@ -248,25 +292,6 @@ def _torque_cautions(train: Train) -> Iterator[str]:
             )
 
 
-def _settling(scene: Scene, model: str) -> Scene:
-    """Return the plain part of a shaft, or all of it on a model that is made for features."""
-    return scene if LADDER[model].for_features else scene.plain
-
-
-def _settling_train(train: Train, model: str) -> Train:
-    """Return a train of such shafts, whose teeth act at their ports."""
-    meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
-    return _with_scenes(train.with_changes(meshes=meshes), lambda scene: _settling(scene, model))
-
-
-def _with_scenes(train: Train, change: Callable[[Scene], Scene]) -> Train:
-    """Return a train whose shafts have changed scenes."""
-    shafts = {
-        side: shaft.with_changes(scene=change(shaft.scene)) for side, shaft in train.shafts.items()
-    }
-    return train.with_changes(shafts=shafts)
-
-
 def _shafts(
     train: Train,
     acting: Callable[[Choice], dict[str, ShaftLoads]],
@@ -295,9 +320,10 @@ def _shafts(
         )
         further = [forces_of(scene, loads[side].loads, loads[side].gravity) for loads in variants]
         name = scene.name if train.is_one_shaft else side
+        solids = solid_notches(scene, stress, asked.tolerance, asked.local, progress)
         safety = None if asked.duty else _open_safety(scene, stress, further, asked.conditions)
         ranges = _ranges(stress, further)
-        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, safety))
+        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, safety, *solids))
     return tuple(shafts), open_by
 
 
@@ -308,8 +334,9 @@ def _open_safety(
     usual = [notch.rating.worst for notch in stress.worst if notch.rating is not None]
     if not variants or not usual:
         return None
-    others = [least_safety(scene, stress, forces, conditions) for forces in variants]
-    return min(*others, *usual[:1]), max(*others, *usual[:1])
+    others = [least_rated(scene, stress, forces, conditions) for forces in variants]
+    safeties = [usual[0], *(notch.rating.worst for notch in others if notch is not None)]
+    return min(safeties), max(safeties)
 
 
 def _ranges(

@@ -24,6 +24,9 @@ if TYPE_CHECKING:
     from solidgear.core.scene import Segment
     from solidgear.strength.stress.section_forces import SectionForces
 
+#: name of the place where the bending moment is largest between loads
+LARGEST = "largest M"
+
 
 @dataclass(frozen=True)
 class CrossSection:
@@ -104,11 +107,13 @@ def nominal_stress(
 
 
 def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[NominalRow, ...]:
-    """Return cross-sections on both sides of every place where a load acts, weights left out, or a
-    segment ends, in the order of their places, the side before each first.
+    """Return cross-sections on both sides of every place where a load acts, a segment ends or the
+    bending moment is largest, in the order of their places, the side before each first.
     """
     ends = [segment.y1 for segment in segments[:-1]]
-    names = {y: name for y, name in zip(forces.y.tolist(), forces.names_without_weights) if name}
+    names = {y: name for y, name in zip(forces.y.tolist(), forces.names) if name}
+    if forces.peak is not None:
+        names[forces.peak] = LARGEST
     loaded = np.array([*names, np.inf])
     marks = sorted([*names, *(y for y in ends if np.abs(loaded - y).min() > TOUCH)])
     rows = []
@@ -130,7 +135,7 @@ def _sides(
     before = next((s for s in segments if s.y0 + TOUCH < y <= s.y1 + TOUCH), None)
     after = next((s for s in segments if s.y0 - TOUCH <= y < s.y1 - TOUCH), None)
     k = int(np.abs(forces.y - y).argmin())
-    loaded = abs(forces.y[k] - y) <= TOUCH
+    loaded = abs(forces.y[k] - y) <= TOUCH and bool(forces.names[k])
     if before is not None:
         yield before, forces.left[k] if loaded else forces.at(y)
     if after is not None and (after is not before or loaded):

@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
+from dataclasses import replace
 from functools import partial
 
 from solidgear.core import listed
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
+from solidgear.strength.stress.cases import CaseStress, Rated
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.drawn import DrawnStress
 from solidgear.strength.stress.rating import Rating
@@ -95,6 +98,50 @@ def safeties(stress: ShaftStress) -> Table:
     if any(r.elementary is not None for r in ratings):
         note += " Fatigue by the consequent rule of Miner; elementary: by the elementary rule."
     return Table("Safety by DIN 743", columns, rows, note)
+
+
+def over_cases(cases: Sequence[CaseStress], units: Units = ENGINEERING) -> list[Table]:
+    """Return the largest moment and the worst notch of every case of the loads; none of one case."""
+    if not cases:
+        return []
+    rated, filleted = any(case.worst for case in cases), any(case.fillet for case in cases)
+    columns = [
+        word("in"),
+        quantity("largest M", "N m", units, digits=4),
+        Column(
+            f"on a fillet, {units.unit(STRESS)}",
+            write=partial(units.number, si=STRESS, digits=4),
+            unit="Pa",
+            hidden=not filleted,
+        ),
+        replace(text("fillet"), hidden=not filleted),
+        Column("S, fatigue", hidden=not rated),
+        Column("S, yielding", hidden=not rated),
+        replace(text("worst notch"), hidden=not rated),
+    ]
+    rows = [
+        [
+            case.label,
+            case.largest_moment,
+            case.amplitude,
+            case.fillet,
+            *_worst_cells(case.worst),
+        ]
+        for case in cases
+    ]
+    note = "Other tables are of the case named above."
+    if filleted:
+        note += " On a fillet: the largest amplitude by bending on a surface."
+    if rated:
+        note += " Safety of the notch where the least of both is smallest."
+    return [Table("Every case of the loads", columns, rows, note)]
+
+
+def _worst_cells(worst: Rated | None) -> list[str | None]:
+    if worst is None:
+        return [None, None, None]
+    fatigue, yielding = safety(worst.rating.fatigue), safety(worst.rating.yielding)
+    return [fatigue, yielding, worst.name]
 
 
 def kind_of(notch: Notch | DrawnStress) -> str:

@@ -23,20 +23,26 @@ A load that is spread over a seat is taken as one at the middle of the loaded pa
 the port, or at the end of the seat nearest to that where the port lies beside the seat. Outside
 of the seats, where all fillets lie, section forces are exact however the load is spread; inside a
 seat the moment given here is that of the concentrated load, a little above that of a spread one.
+
+Weight is spread along the shaft as its mass is. Between two places a and y it adds its own part,
+
+    S(y) = X(a - y)^T S(a) - integral from a to y of X(s - y)^T dm g,
+
+so that moments are curved there, and may be largest where the shear force is zero.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core import DOF_NAMES, TOUCH, Outline, SolidgearError, listed, nearest
+from solidgear.core import DOF_NAMES, TOUCH, SolidgearError, listed, nearest
 from solidgear.core.frames import shift
-from solidgear.core.scene.closed_form import mass_properties
+from solidgear.strength.stress.spread_weight import SpreadWeight
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -45,8 +51,10 @@ if TYPE_CHECKING:
 
 #: components of a section force, in the order of those of loads
 COMPONENTS = ("Q_x", "N", "Q_z", "M_x", "T", "M_z")
-#: how names of loads that are weights begin
+#: how names of the weights of masses begin
 WEIGHT = "weight of "
+#: intervals between two places, of a search for the largest moment or of a curve
+FINE = 24
 #: largest imbalance of loads, relative to the sum of their sizes; moments count by the length
 BALANCED = 1e-6
 #: and that of rounding
@@ -64,41 +72,73 @@ class Load:
 
 @dataclass(frozen=True)
 class SectionForces:
-    """Section forces of a shaft: forces are constant from place to place, moments straight."""
+    """Section forces of a shaft: between places forces are constant and moments straight, but for the
+    weight that is spread there.
+    """
 
-    y: np.ndarray  #: (k,) both ends and all places of loads, ascending, m
+    plain_names = ("y", "names", "left", "right", "largest_moment", "peak")
+
+    #: (k,) both ends and all places of loads, ascending, m; under spread weight the joints of segments
+    #: too, and places between where the bending moment is stationary
+    y: np.ndarray
     names: tuple[str, ...]  #: of the loads at each place; empty where none acts
     #: left, right: (k, 6) just before and just beyond each place: Q_x, N, Q_z in N, M_x, T, M_z in
     #: N m
     left: np.ndarray
     right: np.ndarray
+    spread: SpreadWeight | None = None
 
     def at(self, y: float) -> np.ndarray:
         """Return the section forces (6,) at one place, m; where a load acts, just beyond it."""
         k = int(np.searchsorted(self.y, y, side="right")) - 1
         if k < 0 or y > self.y[-1]:
             return np.zeros(6)
-        return move_load(self.right[k], self.y[k], y)
+        return _carried(self.right[k], self.y[k], y, self.spread)
 
     def before(self, y: float) -> np.ndarray:
         """Return the section forces (6,) at one place, m; where a load acts, just before it."""
         k = int(np.abs(self.y - y).argmin())
         return self.left[k] if abs(self.y[k] - y) <= TOUCH else self.at(y)
 
-    @property
-    def names_without_weights(self) -> tuple[str, ...]:
-        """Names of the loads at each place, without weights."""
-        names = (
-            [name for name in names.split(", ") if not name.startswith(WEIGHT)]
-            for names in self.names
-        )
-        return tuple(map(", ".join, names))
-
     @cached_property
     def largest_moment(self) -> float:
         """Largest bending moment along the shaft, N m."""
-        ends = np.concatenate([self.left, self.right])
-        return float(np.hypot(ends[:, 3], ends[:, 5]).max())
+        return float(self._moments.max())
+
+    @cached_property
+    def peak(self) -> float | None:
+        """Place of the largest bending moment, m, where no load acts there; else None."""
+        k = int(self._moments.argmax())
+        return None if self.names[k] or not self._moments[k] else float(self.y[k])
+
+    @cached_property
+    def _moments(self) -> np.ndarray:
+        """(k,) larger bending moment of both sides of every place, N m."""
+        return np.maximum(_bending(self.left), _bending(self.right))
+
+    @cached_property
+    def curve(self) -> tuple[np.ndarray, np.ndarray]:
+        """Places (n,), m, and section forces (n, 6) of a line along the shaft, with both sides of every
+        place.
+        """
+        y, rows = [self.y[0]], [self.left[0]]
+        for k, end in enumerate(self.y[1:]):
+            count = FINE if self.spread else 1
+            between = np.linspace(self.y[k], end, count + 1)[1:-1]
+            y += [self.y[k], *between, end]
+            rows += [self.right[k], *map(self.at, between), self.left[k + 1]]
+        return np.array([*y, self.y[-1]]), np.array([*rows, self.right[-1]])
+
+
+def _bending(forces: np.ndarray) -> np.ndarray:
+    """Return bending moments of section forces (k, 6), N m."""
+    return np.hypot(forces[:, 3], forces[:, 5])
+
+
+def _carried(forces: np.ndarray, start: float, y: float, spread: SpreadWeight | None) -> np.ndarray:
+    """Return section forces (6,) at a place behind a start, m, between which no load acts but weight."""
+    moved = move_load(forces, start, y)
+    return moved if spread is None else moved - spread.between(start, y, about=y)
 
 
 def move_load(six: np.ndarray, y: float, target: float) -> np.ndarray:
@@ -106,34 +146,74 @@ def move_load(six: np.ndarray, y: float, target: float) -> np.ndarray:
     return shift([0.0, y - target, 0.0]).T @ six
 
 
-def section_forces(loads: Iterable[Load], length: float) -> SectionForces:
-    """Return section forces of a free shaft of a length, m, under loads; those that do not balance
-    are refused, with the component and the rest.
+def section_forces(
+    loads: Iterable[Load], length: float, spread: SpreadWeight | None = None
+) -> SectionForces:
+    """Return section forces of a free shaft of a length, m, under loads and spread weight; those that
+    do not balance are refused, with the component and the rest.
     """
     loads = sorted(loads, key=lambda load: load.y)
-    least = _refuse_imbalance(loads, length)
-    places = _places([load.y for load in loads], length)
+    whole = [] if spread is None else [Load("", 0.0, spread.between(0.0, length, about=0.0))]
+    least = _refuse_imbalance([*loads, *whole], length)
+    joints = [] if spread is None else spread.joints
+    places = _places([*(load.y for load in loads), *joints], length)
+    forces = _along(loads, places, least, spread)
+    if spread is None or not (stationary := [*_stationary(forces)]):
+        return forces
+    return _along(loads, _places([*places, *stationary], length), least, spread)
+
+
+def _along(
+    loads: Sequence[Load],
+    places: Sequence[float],
+    least: np.ndarray,
+    spread: SpreadWeight | None,
+) -> SectionForces:
+    """Return section forces at both sides of places, without what is below the least (6,)."""
     names, before, after = [], [], []
     forces, place = np.zeros(6), 0.0
     for y in places:
-        forces, place = move_load(forces, place, y), y
+        forces, place = _carried(forces, place, y, spread), y
         before.append(forces)
         acting = [load for load in loads if abs(load.y - y) <= TOUCH]
         forces = forces - sum((load.six for load in acting), np.zeros(6))
         after.append(forces)
         names.append(", ".join(load.name for load in acting))
-    sides = [np.where(np.abs(side) > least, side, 0.0) for side in (before, after)]
-    return SectionForces(np.array(places), tuple(names), left=sides[0], right=sides[1])
+    left, right = (np.where(np.abs(side) > least, side, 0.0) for side in (before, after))
+    return SectionForces(np.array(places), tuple(names), left, right, spread)
+
+
+def _stationary(forces: SectionForces) -> Iterator[float]:
+    """Yield places between others, m, where the bending moment is stationary."""
+    # start-up: the optimisers of scipy
+    from scipy.optimize import brentq
+
+    def slope(y: float) -> float:
+        """Return the slope of half the square of the moment, N^2 m."""
+        q_x, _, q_z, m_x, _, m_z = forces.at(y)
+        return float(m_z * q_x - m_x * q_z)
+
+    for start, end in zip(forces.y, forces.y[1:]):
+        places = np.linspace(start, end - TOUCH, FINE + 1)
+        slopes = [*map(slope, places)]
+        for a, b, left, right in zip(places, places[1:], slopes, slopes[1:]):
+            if left * right < 0:
+                yield float(brentq(slope, a, b, xtol=TOUCH))
+            elif left and not right:
+                yield float(b)
 
 
 def forces_of(
     scene: Scene, loads: Mapping[str, ArrayLike], gravity: ArrayLike | None = None
 ) -> SectionForces:
     """Return section forces of a shaft under loads on ports, and the weight where there is
-    gravity.
+    gravity, (3,) in m/s^2.
     """
-    falling = [] if gravity is None else weight(scene, gravity)
-    return section_forces([*on_ports(scene, loads), *falling], scene.length)
+    if gravity is None:
+        return section_forces(on_ports(scene, loads), scene.length)
+    g = np.asarray(gravity, float)
+    spread = SpreadWeight(scene.outline, g)
+    return section_forces([*on_ports(scene, loads), *_masses(scene, g)], scene.length, spread)
 
 
 def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
@@ -160,27 +240,13 @@ def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
     return placed
 
 
-def weight(scene: Scene, gravity: ArrayLike) -> list[Load]:
-    """Return the weight of a shaft and of the masses on it: one load a segment, at its centre of
-    mass; gravity (3,) in m/s^2.
-
-    Section forces are exact at both ends of every segment, where fillets are; between them they
-    step where those of a spread weight run smoothly. Material removed by features
-    still counts.
-    """
-    g = np.asarray(gravity, float)
-    loads = []
-    for k, segment in enumerate(scene.segments):
-        edges = [replace(corner, owner=0) for corner in scene.outline.corners if corner.owner == k]
-        mass = mass_properties(Outline([segment], edges))
-        force = np.concatenate([mass.mass * g, np.zeros(3)])
-        loads.append(Load(f"{WEIGHT}{segment.name}", mass.centre, force))
+def _masses(scene: Scene, gravity: np.ndarray) -> Iterator[Load]:
+    """Yield the weights of the masses on a shaft."""
     seats = {station.name: station.y for station in scene.stations}
     for point in scene.masses:
-        force = np.concatenate([point.mass * g, np.zeros(3)])
+        force = np.concatenate([point.mass * gravity, np.zeros(3)])
         centre = shift(point.offset).T @ force
-        loads.append(Load(f"{WEIGHT}{point.name}", seats[point.station], centre))
-    return loads
+        yield Load(f"{WEIGHT}{point.name}", seats[point.station], centre)
 
 
 def _refuse_imbalance(loads: Sequence[Load], length: float) -> np.ndarray:

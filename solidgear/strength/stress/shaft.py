@@ -29,7 +29,7 @@ from solidgear.strength.stress.nominal import (
     nominal_stress,
 )
 from solidgear.strength.stress.norm.steels import source_of, strength_of
-from solidgear.strength.stress.notch import ENOUGH, FilletFactors, fillet_factors
+from solidgear.strength.stress.notch import ENOUGH, FilletFactors, NotchFactors, fillet_factors
 from solidgear.strength.stress.published import PUBLISHED
 from solidgear.strength.stress.rating import Rating, rated
 from solidgear.strength.stress.section_forces import SectionForces, forces_of
@@ -297,19 +297,13 @@ def _rating(
     )
 
 
-def least_safety(
-    scene: Scene, stress: ShaftStress, forces: SectionForces, conditions: Conditions
-) -> float:
-    """Return the least safety of all notches under other section forces; infinite without ratings."""
-    drawn, _ = drawn_stresses(scene, forces, conditions)
-    safeties = [notch.rating.worst for notch in drawn if notch.rating is not None]
-    for notch in stress.notches:
-        if notch.rating is not None:
-            segment = scene.segments[notch.found.corner.owner]
-            under = conditions.levels(_nominal_at(notch.found, forces))
-            fillet = FilletNotch(notch.found, notch.large)
-            safeties.append(_rating(scene, segment, fillet, under, conditions).worst)
-    return min(safeties, default=np.inf)
+def rating_under(
+    scene: Scene, notch: Notch, forces: SectionForces, conditions: Conditions
+) -> Rating:
+    """Rate a fillet that is rated under other section forces."""
+    under = conditions.levels(_nominal_at(notch.found, forces))
+    segment = scene.segments[notch.found.corner.owner]
+    return _rating(scene, segment, FilletNotch(notch.found, notch.large), under, conditions)
 
 
 def _nominal_at(fillet: FilletFactors, forces: SectionForces) -> NominalStress:
@@ -326,8 +320,8 @@ def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
     return 2 * corner.r, 2 * (end if corner.side > 0 else start)
 
 
-def local_stress(fillet: FilletFactors, forces: np.ndarray) -> Local:
-    """Return the stress on the arc of a fillet under section forces (6,), where the normal stress
+def local_stress(fillet: NotchFactors, forces: np.ndarray) -> Local:
+    """Return the stress on the arc of a notch under section forces (6,), where the normal stress
     is largest.
     """
     section, a = fillet.section, fillet.radius

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import listed
+from solidgear.core import TOUCH, listed
 from solidgear.show.panel import GREY, Panel, Series, curve, readout
 from solidgear.show.plot import WIDE, Chart
 from solidgear.show.scales import Axis
@@ -20,16 +20,19 @@ from solidgear.show.words import DASH, percent
 from solidgear.strength.load import LoadsAlone
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.strength.stress.din743 import LOADS, Load
+from solidgear.strength.stress.nominal import LARGEST
 from solidgear.strength.stress.notch_tables import (
     LITTLE,
     STRESS,
     drawn_notches,
     headline,
+    over_cases,
     rating,
     safeties,
 )
 from solidgear.strength.stress.section_forces import SectionForces
 from solidgear.strength.stress.shaft import Notch, ShaftStress
+from solidgear.strength.stress.solid_sheet import solid_factors, solid_stress
 
 #: of section forces: name, place among the six, and SI unit
 COMPONENTS = (
@@ -108,11 +111,12 @@ def _chart(stressed: StressAtRest, shaft: StressedShaft, units: Units, width: fl
 
 
 def _tables(stressed: StressAtRest, units: Units, all_ratings: bool = True) -> list[Table]:
-    return [
+    tables = [
         table
         for shaft in stressed.shafts
         for table in shaft_tables(stressed, shaft, units, all_ratings)
     ]
+    return [*over_cases(stressed.cases, units), *tables]
 
 
 def shaft_tables(
@@ -131,6 +135,8 @@ def shaft_tables(
         surface_stress(stress, shaft.open, units, stressed.open_by),
         form_factors(stress),
         drawn_notches(stress, units),
+        solid_stress(shaft.solids, units),
+        solid_factors(shaft.solids),
         safeties(stress),
         *(rating(name, record, units) for name, record in rated[: None if all_ratings else 1]),
     ]
@@ -146,6 +152,7 @@ def sentences(stressed: StressAtRest, units: Units = ENGINEERING) -> list[str]:
     for shaft in stressed.shafts:
         lead = f"{shaft.name}: " if len(stressed.shafts) > 1 else ""
         shaft_remarks = remarks(shaft.found, units)
+        shaft_remarks += [f"{remark}." for remark in shaft.without_solid]
         if not shaft.found.notches:
             shaft_remarks.insert(0, "no shoulder has a fillet, so there is no stress on one.")
         if shaft.weak:
@@ -172,7 +179,7 @@ def section_forces(
     """Return section forces on both sides of every load; `open_` is the range of the largest
     moment, N m.
     """
-    sides = _sides(forces, forces.names_without_weights)
+    sides = _sides(forces)
     q_x, n, q_z, m_x, t, m_z = np.array([side[3] for side in sides]).T
     force = _without_rounding(np.array([n, np.hypot(q_x, q_z)]))
     moment = _without_rounding(np.array([np.hypot(m_x, m_z), t]))
@@ -185,8 +192,8 @@ def section_forces(
         *(quantity(name, "N m", units) for name in "MT"),
     ]
     note = f"{CONVENTION} N is positive in tension; Q and M are sizes of two components."
-    if forces.names_without_weights != forces.names:
-        note += " Weight acts between, at the middle of each segment."
+    if forces.spread is not None:
+        note += " Weight is spread along the shaft."
     if open_ is not None and open_[1] > (1 + LITTLE) * open_[0]:
         low, high = (units.number(value, "N m", 4) for value in open_)
         note += f" Largest M {low} to {high} {units.unit('N m')} by {open_by} of the bearings."
@@ -199,25 +206,36 @@ def _without_rounding(values: np.ndarray) -> np.ndarray:
 
 
 def components(forces: SectionForces) -> Table:
-    """Return all six components on both sides of every place, in SI, for other programs."""
+    """Return all six components on both sides of every load, and between where weight bends them, in
+    SI, for other programs.
+    """
+    sides = _sides(forces)
+    labelled = np.array([y for y, *_ in sides])
+    if forces.spread is not None:
+        sides += [
+            (float(y), "", "both", six)
+            for y, six in zip(*forces.curve)
+            if np.abs(labelled - y).min() > TOUCH
+        ]
+        sides.sort(key=lambda side: side[0])
     heads = [f"{name} [{si}]" for name, _, si in COMPONENTS]
     columns = ["y [m]", "acts there", "side", *heads]
     rows = [
-        [y, name, side, *(float(six[k]) for _, k, _ in COMPONENTS)]
-        for y, name, side, six in _sides(forces, forces.names)
+        [y, name, side, *(float(six[k]) for _, k, _ in COMPONENTS)] for y, name, side, six in sides
     ]
     return Table("", [Column(head, write=exact) for head in columns], rows).counted("place")
 
 
-def _sides(forces: SectionForces, names: Sequence[str]) -> list[tuple[float, str, str, np.ndarray]]:
-    """Yield place, load, side and section forces, without places off the shaft or without a name."""
+def _sides(forces: SectionForces) -> list[tuple[float, str, str, np.ndarray]]:
+    """Return place, load, side and section forces, without places off the shaft or without a name."""
     last = len(forces.y) - 1
-    ends = {0: names[0] or "end", last: names[-1] or "end"}
+    ends = {0: forces.names[0] or "end", last: forces.names[-1] or "end"}
     out = []
-    for k, (y, name) in enumerate(zip(forces.y.tolist(), names)):
+    for k, (y, name) in enumerate(zip(forces.y.tolist(), forces.names)):
         label = ends.get(k, name)
         out += [(y, label, "before", forces.left[k])] if label and k else []
         out += [(y, label, "beyond", forces.right[k])] if label and k < last else []
+        out += [(y, LARGEST, "both", forces.right[k])] if y == forces.peak else []
     return out
 
 
@@ -397,13 +415,15 @@ def _panel(
     last: bool,
 ) -> Panel:
     """Return the panel of one kind of section force."""
-    y = units.values(np.repeat(forces.y, 2), "m")
-    sides = np.stack([forces.left, forces.right], axis=1).reshape(-1, 6)
+    places, lines = forces.curve
+    y = units.values(places, "m")
     curves = {
-        key: (y, units.values(sides[:, component], si)) for key, component in components.items()
+        key: (y, units.values(lines[:, component], si)) for key, component in components.items()
     }
     if len(curves) > 1:
         curves[name.split()[-1]] = _size(*curves.values())
+    sides = np.stack([forces.left, forces.right], axis=1).reshape(-1, 6)
+    readings = {key: units.values(sides[:, component], si) for key, component in components.items()}
     series = {key: Series(COLOURS.get(key, SIZE if len(curves) > 1 else ALONE)) for key in curves}
     panel = Panel(
         Axis(f"y in {units.unit('m')}" if last else "", (float(y[0]), float(y[-1]))),
@@ -422,9 +442,7 @@ def _panel(
             mark |= {"strokeDash": [5, 3]}
         panel.draw(mark, curve(place, values, name=key))
         if key in components:
-            panel.read(
-                _read(forces, y, key, values, units.unit(si), units.unit("m")), series[key].colour
-            )
+            panel.read(_read(forces, key, readings[key], units.unit(si), units), series[key].colour)
     return panel
 
 
@@ -437,20 +455,24 @@ def _size(
     share = np.linspace(0.0, 1.0, BETWEEN)
     (y, first), (_, second) = a, b
 
+    steps = np.flatnonzero(np.diff(y) > 0)
+
     def fine(values: np.ndarray) -> np.ndarray:
-        return (values[1:-1:2, None] * (1 - share) + values[2::2, None] * share).ravel()
+        return (values[steps, None] * (1 - share) + values[steps + 1, None] * share).ravel()
 
     return fine(y), np.hypot(fine(first), fine(second))
 
 
 def _read(
-    forces: SectionForces, y: np.ndarray, key: str, values: np.ndarray, unit: str, length: str
+    forces: SectionForces, key: str, values: np.ndarray, unit: str, units: Units
 ) -> list[dict[str, Any]]:
     """Return places to be read: both sides of every load."""
-    rows = curve(y, values)
+    rows = curve(units.values(np.repeat(forces.y, 2), "m"), values)
+    last = len(forces.y) - 1
     for k, row in enumerate(rows):
-        name = f"{key} {'beyond' if k % 2 else 'before'} {forces.names[k // 2] or 'end'}"
-        facts = ("y", plain(row["x"]), length), (key, plain(row["y"]), unit)
+        usual = "end" if k // 2 in (0, last) else "here"
+        name = f"{key} {'beyond' if k % 2 else 'before'} {forces.names[k // 2] or usual}"
+        facts = ("y", plain(row["x"]), units.unit("m")), (key, plain(row["y"]), unit)
         row["readout"] = readout(name, *facts)
     return rows
 

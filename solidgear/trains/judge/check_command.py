@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from solidgear.show.command import command
-from solidgear.show.options import Fixed, Run, SceneFile, options
+from solidgear.show.options import CaseName, Fixed, Run, SceneFile, options
 from solidgear.show.sheet import present
 from solidgear.trains.judge.check_study import check as checked
 
@@ -13,7 +13,8 @@ def check(
     scene: SceneFile,
     *,
     model: Fixed,
+    case: CaseName = None,
     run: Run,
 ) -> None:
     settings = options(model.settings)
-    present(lambda _: checked(scene, model.name, settings).sheet(), run)
+    present(lambda _: checked(scene, model.name, settings, case=case).sheet(), run)

@@ -15,11 +15,18 @@ from solidgear.core import (
     load,
     name_of_source,
 )
+from solidgear.core.loading import under_case
 from solidgear.guards.check import Check, check_scene
 from solidgear.show.options import MODEL
 
 
-def check(source: Source, model: str = MODEL, options: Mapping[str, Any] | None = None) -> Check:
+def check(
+    source: Source,
+    model: str = MODEL,
+    options: Mapping[str, Any] | None = None,
+    *,
+    case: str | None = None,
+) -> Check:
     """Which models hold for a scene or train, which do not, and why; solves light meshes only.
 
     Parameters
@@ -30,6 +37,9 @@ def check(source: Source, model: str = MODEL, options: Mapping[str, Any] | None 
         Of one shaft: the model whose mesh is looked at.
     options : mapping, optional
         Builder options of the model.
+    case : str, optional
+        Of one shaft: case of the loads under which bearings settle, by name or number; by default
+        the first.
 
     Returns
     -------
@@ -50,6 +60,7 @@ def check(source: Source, model: str = MODEL, options: Mapping[str, Any] | None 
     """
     usual = model == MODEL and not options
     if is_train(source):
+        under_case(source, case)
         # start-up: a shaft has no use for the studies of trains
         from solidgear.trains.judge.check import check_train
         from solidgear.trains.options import Reduced
@@ -61,7 +72,7 @@ def check(source: Source, model: str = MODEL, options: Mapping[str, Any] | None 
                 "models and meshes run check on the file of a shaft"
             )
         return check_train(Reduced().assembly(source, solves_teeth=False))
-    scene = load(source)
+    scene = load(under_case(source, case))
     # a model of revolution is looked at on the plain part, and the check says so
     part = scene.plain if LADDER[model].unfit(scene) else scene
     chosen = dict(HARMONIC) if usual else LADDER[model].checked(dict(options or {}))

@@ -11,7 +11,7 @@ import typer
 from solidgear.core import SolidgearError, listed
 from solidgear.core.judge.answer import asked_for
 from solidgear.show.command import Progress, command
-from solidgear.show.options import Run, SceneFile
+from solidgear.show.options import CaseName, Run, SceneFile
 from solidgear.show.plot import check_ending
 from solidgear.show.remarks import load
 from solidgear.show.sheet import Sheet, present
@@ -38,11 +38,12 @@ def budget(
         Path | None,
         typer.Option("--out", "-o", help="Chart of it: a file that ends in .png or .svg."),
     ] = None,
+    case: CaseName = None,
     run: Run,
 ) -> None:
     if out is not None:
         check_ending(out)
-    loaded = load(scene)
+    loaded = load(scene, case)
     names = asked_for(loaded, ask) if ask else ()
 
     def study(progress: Progress) -> Sheet:
