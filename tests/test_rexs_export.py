@@ -78,6 +78,17 @@ def test_a_shaft_alone_reads_back_equal(name, tmp_path):
     assert differing == []
 
 
+@pytest.mark.parametrize("name", ["NU 207", "MX-4711"])
+def test_a_listed_bearing_reads_back_without_its_list(name, tmp_path):
+    line = f"designation;kind;d [mm];D [mm];B [mm];C [kN]\n{name};cylindrical;35;72;17;55\n"
+    (tmp_path / "list.csv").write_text(line)
+    file = (GEOMETRY / "gearbox_catalogue.toml").read_text()
+    file = 'bearings = "list.csv"\n' + file.replace('"NU 207"', f'"{name}"')
+    (tmp_path / "shaft.toml").write_text(file)
+    differing, _ = went_round(read_source(tmp_path / "shaft.toml"), tmp_path / "back")
+    assert differing == []
+
+
 @pytest.mark.parametrize("box", [helical, planetary])
 def test_a_gearbox_of_another_program_goes_in_out_and_in_again(box, tmp_path):
     train, _ = again(document_of(box().xml().encode()), tmp_path / "first")

@@ -303,11 +303,17 @@ class Catalogue(Model):
         if "support" in data:
             reason = "belongs to the bearing, not to its catalogue data"
             raise SceneError(reason, path=("support",), value=show(data["support"]))
+        if "designation" in data and not (
+            isinstance(data["designation"], str) and (data["designation"] or "kind" in data)
+        ):
+            reason = 'must be a text in quotes, such as "6208", or left out'
+            raise SceneError(reason, path=("designation",), value=show(data["designation"]))
         data = with_listed_by_variable(data, Catalogue)
         if (
             isinstance(data.get("designation"), str)
             and data["designation"]
-            and not data.get("listed")
+            # a file of another program leaves out what the designation gives, and keeps the list
+            and not ("kind" in data and data.get("listed"))
         ):
             data = _with_boundary(data)
         super().__init__(**data)

@@ -21,12 +21,21 @@ def complete(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     bearings = out.get("bearing")
     if name is None or not isinstance(bearings, list):
         return out
+    listed = read_list(os.fspath(path_of_list(name, folder)), Catalogue)
+    out["bearing"] = [_completed(table, listed) for table in bearings]
+    return out
+
+
+def path_of_list(name: Any, folder: Path) -> Path:
+    """Return the path of a list that a file in a folder names; refuse what is no file."""
     if not isinstance(name, str):
         reason = 'names the file of a list of bearings, such as "my_bearings.csv"'
         raise SceneError(reason, path=("bearings",), value=show(name))
-    listed = read_list(os.fspath(folder / name), Catalogue)
-    out["bearing"] = [_completed(table, listed) for table in bearings]
-    return out
+    path = folder / name
+    if not path.is_file():
+        reason = "there is no such file; name a list of bearings (CSV), beside this file"
+        raise SceneError(reason, path=("bearings",), value=show(name))
+    return path
 
 
 def _completed(table: Any, listed: Mapping[str, Mapping[str, Any]]) -> Any:

@@ -133,7 +133,17 @@ def explained(source: Source, tables: Mapping[str, Any] | None = None) -> Iterat
         yield
     except SceneError as error:
         written = document_of(source).tables if tables is None else tables
-        raise error.located(written, where=name_of_source(source)) from None
+        raise SceneError.of(
+            problem.located(
+                written,
+                where=name_of_source(source),
+                # a scene has bearings, its file [[bearing]] tables
+                path=("bearing", *problem.path[1:])
+                if problem.path[:1] == ("bearings",) and "bearing" in written
+                else problem.path,
+            )
+            for problem in error.problems
+        ) from None
     except SolidgearError as error:
         raise SceneError(str(error), where=name_of_source(source)) from None
 

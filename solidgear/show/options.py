@@ -301,7 +301,7 @@ def speed_of(text: str | None) -> float | None:
     try:
         speed = quantity(text, "speed")
     except SceneError as error:
-        raise SolidgearError(f"--speed {error}") from None
+        raise SolidgearError(f"`speed` {error}") from None
     if speed <= 0:
-        raise SolidgearError(f"--speed {text}: must be greater than zero")
+        raise SolidgearError(f"`speed` {text}: must be greater than zero")
     return speed

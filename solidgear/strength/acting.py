@@ -15,6 +15,7 @@ from solidgear.core import (
     SolidgearError,
     Source,
     as_written,
+    explained,
     is_train,
     name_of_source,
     show,
@@ -106,7 +107,8 @@ class Acting(Group):
             scene = scene.with_case(self.case)
         if self.drive:
             scene = driven(scene, torques(self.drive))
-        assembly = Assembly.of(scene, kept=FEW, tol=tol)
+        with explained(source):
+            assembly = Assembly.of(scene, kept=FEW, tol=tol)
         return assembly, assembly.train.point or AT_REST
 
     def read_train(self, source: Source | Train) -> tuple[Train, OperatingPoint]:
@@ -152,6 +154,10 @@ class Acting(Group):
 
 def torques(drive: list[str] | Mapping[str, Any]) -> dict[str, float]:
     """Return torques by the place where each enters, N m, from ``B=115 N*m`` or a mapping."""
+    if not isinstance(drive, (Mapping, list, tuple)):
+        raise SolidgearError(
+            f'`drive` {show(drive)}: give places with their torques, such as {{"B": "115 N*m"}}'
+        )
     pairs = drive.items() if isinstance(drive, Mapping) else map(_torque, drive)
     out = {}
     for name, value in pairs:

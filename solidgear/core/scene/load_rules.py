@@ -35,12 +35,12 @@ def all_loads(
     return (ShaftLoad(name=ONLY, on=port, **words), *loads)
 
 
-def named_case(cases: Sequence[LoadCase], name: str | None = None) -> LoadCase:
+def named_case(cases: Sequence[LoadCase], name: str | int | None = None) -> LoadCase:
     """Return the case of a name or number, counted from one; by default the first, or all loads."""
     if name is None:
         return cases[0] if cases else LoadCase(name=ALL)
     for k, case in enumerate(cases, start=1):
-        if name in (case.name, str(k)):
+        if str(name) in (case.name, str(k)):
             return case
     names = listed([f"{k} {case.name!r}" for k, case in enumerate(cases, start=1)])
     raise SolidgearError(

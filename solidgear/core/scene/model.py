@@ -431,12 +431,13 @@ class Scene(Displayed, Model):
         """True where a load acts on the shaft."""
         return self.load is not None or bool(self.loads) or self.weight is not None
 
-    def with_case(self, name: str) -> Scene:
+    def with_case(self, name: str | int) -> Scene:
         """The same scene with the case of a name first, under which bearings of catalogue data settle.
 
         Parameters
         ----------
-        name : str
+        name : str or int
+            Its name, or its number from one.
 
         Returns
         -------

@@ -24,6 +24,7 @@ from solidgear.core.scene.load_kinds import check_words, kind_of
 from solidgear.core.scene.places import Along, Placed, Places
 from solidgear.core.scene.stations import Attachment, Port
 from solidgear.core.scene.units import (
+    Diameter,
     Factor,
     Length,
     Mass,
@@ -47,6 +48,8 @@ TOWARDS = (
     'must be "+x", "-x", "+z", "-z", or an angle from x towards z such as "30 deg": from the axis '
     "to the tooth contact, the other pulley, or where the force points"
 )
+#: largest angle, rad, with what rounding adds
+TURN = 2 * np.pi + 1e-9
 AxisWord = Literal["+x", "-x", "+z", "-z"]
 Sense = Literal["driving", "driven"]
 Hand = Literal["left", "right"]
@@ -61,9 +64,12 @@ def _towards(value: Any) -> Any:
         if word in ACROSS:
             return word
     try:
-        return quantity(value, "angle")
+        angle = quantity(value, "angle")
     except SceneError:
         raise SceneError(TOWARDS) from None
+    if abs(angle) > TURN:
+        raise SceneError(f"is more than a turn: plain numbers are rad; {TOWARDS}")
+    return angle
 
 
 Towards = Annotated[str | float, BeforeValidator(_towards), Written(AxisWord | SignedAngle)]
@@ -154,7 +160,7 @@ class ShaftLoad(Placed):
     #: moment about the axis, N m, positive about +y; also of a gear or a belt
     torque: Torque | None = None
     #: of a gear: reference diameter at the middle of its face, m
-    pitch_diameter: PositiveLength | None = None
+    pitch_diameter: Diameter | None = None
     #: of a gear, in place of a torque: tangential force with the sign of the torque, N
     tangential_force: Newtons | None = None
     #: of a gear: pressure angle in the normal section; 20 deg by default
@@ -168,7 +174,7 @@ class ShaftLoad(Placed):
     #: of a bevel gear: side on which the apex of its pitch cone lies
     apex: AlongAxis | None = None
     #: of a belt or chain: diameter of the pulley, m
-    diameter: PositiveLength | None = None
+    diameter: Diameter | None = None
     #: of a belt or chain: pull of the tight side, N
     tight: PositiveLoad | None = None
     #: of a belt or chain: pull of the slack side, N

@@ -312,6 +312,7 @@ Position = Annotated[
     float, _in("length"), AfterValidator(lambda v: round(v, POSITION_DECIMALS) + 0.0)
 ]
 PositiveLength = Annotated[Length, _POSITIVE]
+Diameter = Annotated[PositiveLength, Range("is above 20 m: probably wrong units", most=20)]
 Thickness = Annotated[Length, _NOT_NEGATIVE]
 Angle = Annotated[
     float,

@@ -1,4 +1,4 @@
-"""Rules between teeth and bolt circles: on one segment, and around one axis."""
+"""Rules between features on one segment: teeth, bolt circles, grooves."""
 
 from __future__ import annotations
 
@@ -7,20 +7,24 @@ from collections.abc import Iterator, Sequence
 from itertools import combinations
 from typing import Any
 
-from solidgear.core import SceneError
+from solidgear.core import TOUCH, SceneError
 from solidgear.core.scene.feature import FEWEST, SMALLEST
 from solidgear.core.scene.parts import Segment
 from solidgear.cuts.features.bolt_circle import BoltCircle
+from solidgear.cuts.features.grooves import Groove
+from solidgear.cuts.features.relief import Relief
 from solidgear.cuts.features.toothed import Spline, Teeth
 
 #: angle, rad, up to which gaps of two sets of teeth lie behind each other
 SAME_ANGLE = 1e-9
+#: turned into a cylinder
+GROOVES = (Groove, Relief)
 
 
 def meeting_problems(
     segments: Sequence[Segment], features: Sequence[Any]
 ) -> Iterator[tuple[int, SceneError]]:
-    """Yield problems of teeth and bolt circles that cannot share a segment, each with the number of
+    """Yield problems of teeth, bolt circles and grooves that cannot share a place, each with the number of
     the feature whose fields it names.
     """
     segment_named = {s.name: s for s in segments}
@@ -42,6 +46,15 @@ def meeting_problems(
                     j,
                     SceneError(f'the holes run into those of "{a.name}"', path=("circle",)),
                 )
+        elif isinstance(a, GROOVES) and isinstance(b, GROOVES):
+            (lo, hi), (first, last) = a.span(segments), b.span(segments)
+            if min(hi, last) - max(lo, first) > TOUCH:
+                place = "side" if isinstance(b, Relief) else "y"
+                reason = (
+                    f"the {b.what} reaches from {first:.6g} to {last:.6g} m, into the {a.what} "
+                    f'"{a.name}" ({lo:.6g} to {hi:.6g} m)'
+                )
+                yield j, SceneError(reason, path=(place,))
         elif a.toothed != b.toothed and BoltCircle in (type(a), type(b)):
             teeth, bolts = (a, b) if a.toothed else (b, a)
             reason = "" if teeth.smeared else _in_teeth(teeth, bolts, segment_named[b.segment])

@@ -19,9 +19,12 @@ from pydantic import AfterValidator
 
 from solidgear.core import PositiveLength, SceneError
 from solidgear.core.scene.parts import Segment
-from solidgear.core.scene.units import Modulus, Poisson, Stress
+from solidgear.core.scene.units import Diameter, Modulus, Poisson, Stress
 from solidgear.cuts.features.detail import Stretch
 from solidgear.cuts.features.fits import checked_fit, interference_of
+
+#: interference over diameter at which steels have long yielded
+LARGEST = 0.01
 
 
 class PressFit(Stretch):
@@ -39,7 +42,7 @@ class PressFit(Stretch):
 
     kind: Literal["press_fit"] = "press_fit"
     #: outer diameter of the hub, m
-    hub_diameter: PositiveLength
+    hub_diameter: Diameter
     #: largest difference of diameters before joining, m, less what smoothing of surfaces takes
     interference: PositiveLength | None = None
     #: fit in place of the interference, such as H7/s6
@@ -92,6 +95,12 @@ class PressFit(Stretch):
         if (self.fit is None) == (self.interference is None):
             yield SceneError(
                 'give either an interference or a fit, such as "H7/s6"', path=("interference",)
+            )
+            return
+        if (self.interference or 0.0) > LARGEST * diameter:
+            yield SceneError(
+                f"is more than a hundredth of the diameter, {diameter:.6g} m: probably wrong units",
+                path=("interference",),
             )
             return
         try:

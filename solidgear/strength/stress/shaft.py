@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
-from solidgear.core import SolidgearError
+from solidgear.core import TOUCH, SolidgearError, show
 from solidgear.core.scene.corner import Corner
 from solidgear.core.scene.outline import radii_of
 from solidgear.strength.stress.conditions import Conditions
@@ -210,16 +210,24 @@ def shaft_stress(
 
 def check_tolerance(tolerance: float) -> None:
     """Refuse a relative error bar that no mesh reaches."""
-    if not FINEST <= tolerance < 1:
+    if not isinstance(tolerance, (int, float)) or not FINEST <= tolerance < 1:
         raise SolidgearError(
-            f"tolerance = {tolerance}: give a relative error bar of form factors from {FINEST:g} "
+            f"tolerance = {show(tolerance)}: give a relative error bar of form factors from {FINEST:g} "
             "to 1"
         )
 
 
 def sharp_corners(scene: Scene) -> Iterator[SharpCorner]:
-    """Yield re-entrant corners of the outline that have no fillet."""
+    """Yield re-entrant corners of the outline that have neither fillet nor undercut."""
+    undercut = [
+        (segment.y0 if feature.side == "start" else segment.y1)
+        for feature in scene.features
+        for segment in scene.segments
+        if feature.kind == "relief" and segment.name == feature.segment
+    ]
     for edge in scene.outline.edges:
+        if edge.surface == "outer" and any(abs(edge.y - y) < TOUCH for y in undercut):
+            continue
         if edge.angle > np.pi + SMOOTH:
             low, high = scene.segments[edge.joint - 1 : edge.joint + 1]
             yield SharpCorner(edge.y, edge.surface, (low.name, high.name), bool(edge.root))

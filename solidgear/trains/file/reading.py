@@ -25,7 +25,6 @@ from solidgear.core import (
     document_of,
     listed,
     near,
-    show,
 )
 from solidgear.core import as_written as scene_as_written
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS
@@ -212,10 +211,10 @@ def with_list_of(raw: Mapping[str, Any], folder: Path, shaft: ReadShaft) -> Read
     name = raw.get("bearings")
     if name is None:
         return shaft
-    if not isinstance(name, str):
-        reason = 'names the file of a list of bearings, such as "my_bearings.csv"'
-        raise SceneError(reason, path=("bearings",), value=show(name))
-    path = os.path.abspath(folder / name)
+    # start-up: most trains name no list
+    from solidgear.bearings.scene_list import path_of_list
+
+    path = os.path.abspath(path_of_list(name, folder))
 
     def read(side: str, source: Any, alone: bool) -> Scene:
         document = document_of(source)

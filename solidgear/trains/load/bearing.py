@@ -82,7 +82,7 @@ def bearing(
     *,
     load: str | Mapping[str, Any] | None = None,
     speed: str | None = None,
-    case: str | None = None,
+    case: str | int | None = None,
 ) -> SolvedBearings:
     """Catalogue bearings: stiffness at load, load of every element, pressure, life; of a train with
     an operation lives over its points, and of a shaft over the cases of its loads.
@@ -98,7 +98,7 @@ def bearing(
     speed : str, optional
         Of a shaft: its speed, such as ``"3000 rpm"``, for lives in hours; by default that of the
         case.
-    case : str, optional
+    case : str or int, optional
         Of a shaft: case of its loads, by name or number; by default the first.
 
     Returns
