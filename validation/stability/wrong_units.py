@@ -80,6 +80,11 @@ def slipped(scene, length=1.0, E=1.0, density=1.0, spring=1.0, tilt=1.0, axial=1
     )
 
 
+def _springs(scene):
+    """The bearings with a stiffness, which rigid holds have none of."""
+    return [b for b in scene.bearings if not b.hold]
+
+
 def ratios(scene) -> dict[str, float]:
     """Numbers that a slip moves by orders of magnitude; no solution is needed for any."""
     length = scene.length
@@ -112,8 +117,8 @@ def ratios(scene) -> dict[str, float]:
     out["first bending, free, Hz"] = float(
         22.37 / (2 * np.pi) * np.sqrt(bend / (rho.mean() * area * length**4))
     )
-    if scene.bearings:
-        k = [np.diag(b.matrix) for b in scene.bearings]
+    if springs := _springs(scene):
+        k = [np.diag(b.matrix) for b in springs]
         radial = [v for row in k for v in row[[0, 2]] if v > 0]
         axial = [float(row[1]) for row in k if row[1] > 0]
         turn = [
@@ -163,9 +168,9 @@ def measure(quick: bool = False) -> Finding:
             moved = set(factors) & {"spring", "tilt", "axial"}
             if (
                 moved
-                and not scene.bearings
+                and not _springs(scene)
                 or "tilt" in moved
-                and not any(b.matrix[3][3] for b in scene.bearings)
+                and not any(b.matrix[3][3] for b in _springs(scene))
             ):
                 continue
             row = {"scene": path.stem, "slip": slip}
