@@ -13,7 +13,8 @@ import pytest
 import solidgear as sg
 from solidgear.core.scene.document import Document, document_of, is_train
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.train_task import train_task, train_variants
+from solidgear.variants.sweep.train_task import train_task
+from solidgear.variants.sweep.train_variants import train_variants
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 SHAFT = GEOMETRY / "gearbox_catalogue.toml"

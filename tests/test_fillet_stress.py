@@ -12,7 +12,7 @@ from solidgear.core.scene import Chamfer, Fillet
 from solidgear.core.solve.backends.matrix import FactorError
 from solidgear.core.solve.statics import flexibility
 from solidgear.strength.stress import notch
-from solidgear.strength.stress.arc_stress import Arc
+from solidgear.strength.stress.arc_stress import Arc, RootArc
 from solidgear.strength.stress.notch import UNIT_LOADS, fillet_factors, piece_around
 from solidgear.strength.stress.published import CHARTS
 from solidgear.strength.stress.shaft import shaft_stress, sharp_corners
@@ -141,7 +141,7 @@ def test_the_piece_has_the_stress_of_the_whole_shaft(turned):
     (notch,) = shaft_stress(scene, loads, tolerance=0.005).notches
     body = harmonic(scene, order=6, layers=4, edge_layers=1)
     fields = flexibility(body).fields
-    arc = Arc(scene, body, scene.corners[0])
+    arc = Arc(scene, body, RootArc.of(scene.corners[0]))
     six = np.array([loads[port.name] for port in body.ports])
     whole = {}
     for name, components in (("bending_z", [2, 3]), ("axial", [1]), ("torsion", [4])):
@@ -184,12 +184,11 @@ def test_sharp_corners_are_told_and_get_no_number():
 
 def test_an_arc_is_asked_for_where_there_is_one():
     piece = piece_around(shoulder(), "fillet")
-    body = sg.build(shoulder(), "harmonic", order=2)
     chamfer = Chamfer(name="c", y=0.3, length=0.002).corner(shoulder().segments)
     with pytest.raises(SolidgearError, match='chamfer "c" is no arc'):
-        Arc(shoulder(), body, chamfer)
+        RootArc.of(chamfer)
     with pytest.raises(SolidgearError, match="the mesh has no arc"):
-        Arc(piece, sg.build(shoulder().with_changes(blends=()), "harmonic", order=2), piece.corner)
+        Arc(piece, sg.build(shoulder().with_changes(blends=()), "harmonic", order=2), piece.root)
 
 
 @pytest.mark.long

@@ -10,7 +10,17 @@ from solidgear.core.models.beam import element as beam_element
 from validation.manual import CASES
 from validation.manual import __main__ as command
 from validation.manual.case import Answer, CaseError, Model, Reference
-from validation.manual.cases import free_beams, held_beams, pinion, spur_train, thesis
+from validation.manual.cases import (
+    free_beams,
+    held_beams,
+    pinion,
+    printed_bearings,
+    printed_countershaft,
+    printed_notches,
+    printed_shafts,
+    spur_train,
+    thesis,
+)
 from validation.manual.page import FOLDER, INDEX, SAME_SIZE, index, lines, read, render
 from validation.thesis.krylov import from_scene
 
@@ -86,6 +96,14 @@ def test_index_lists_the_pages():
     assert {p.stem for p in FOLDER.glob("*.md")} == {*CASES, "README"}
 
 
+def test_index_counts_numbers_that_are_equal_to_the_printed_digits():
+    case = CASES["printed_two_belts"]  # 223 and 127 lbf
+    values = {"F_A y": 223.4, "F_D y": 127.6}
+    told = {case.name: {"A": Answer(values, 6)}}
+    (row,) = (line for line in index({case.name: case}, told).splitlines() if "two_belts" in line)
+    assert "| 1 of 2 | F_D y: +0.472 % |" in row and "NOT OK" in row
+
+
 @pytest.mark.parametrize(
     "old, new",
     [
@@ -133,6 +151,8 @@ NO_MATERIAL = ("thesis_geared_pair", "pinion_seat_ties", "pinion_beam_over_solid
 NO_MATERIAL += ("ball_bearing_displacement", "angular_contact_218", "roller_row")
 #: two shafts, and elements that know no scene; spoilt by a test of its own
 NO_MATERIAL += ("spur_train",)
+#: of books: statics, charts and ratings; spoilt by tests of their own
+NO_MATERIAL += tuple(name for name, case in CASES.items() if case.printed)
 
 
 def spoilt(monkeypatch, key, factor):
@@ -171,6 +191,57 @@ def test_two_shafts_of_another_steel_are_not_ok(letter, monkeypatch):
     modulus, *rest = spur_train.EXAMPLE
     monkeypatch.setattr(spur_train, "EXAMPLE", (1.01 * modulus, *rest))
     assert max(line.share for line in case.lines(model, model.solve().values)) > 1
+
+
+def far(cases):
+    """Names of cases with a fast model that is out of its tolerance."""
+    fast = [(case.name, letter) for case in cases for letter, m in case.lettered if not m.slow]
+    return {name for name, letter in fast if not all(line.ok for line in judged(name, letter))}
+
+
+def test_printed_shafts_notice_a_bearing_five_millimetres_off(monkeypatch):
+    def moved(study):
+        def study_of_moved(source, *args, **options):
+            scene = source if isinstance(source, sg.Scene) else sg.Scene.from_dict(source)
+            first, *rest = scene.bearings
+            other = first.with_changes(y=first.y - 5e-3)
+            return study(scene.with_changes(bearings=(other, *rest)), *args, **options)
+
+        return study_of_moved
+
+    for name in ("deflect", "stress"):
+        monkeypatch.setattr(sg, name, moved(getattr(sg, name)))
+    shafts = (*printed_countershaft.CASES, *printed_shafts.CASES)
+    assert far(shafts) == {case.name for case in shafts}
+
+
+def test_printed_notches_notice_one_per_cent_of_the_load(monkeypatch):
+    stress = sg.stress
+
+    def more(scene, *args, **options):
+        loads = [
+            {key: 1.01 * v if key in ("thx", "torque", "y") else v for key, v in load.items()}
+            for load in scene["load"]
+        ]
+        return stress(scene | {"load": loads}, *args, **options)
+
+    monkeypatch.setattr(sg, "stress", more)
+    monkeypatch.setitem(printed_notches.LOAD_1, "moment", 1.01 * printed_notches.LOAD_1["moment"])
+    charts, hub, *ratings = printed_notches.CASES
+    assert (charts, hub) == (printed_notches.BOOK_SHOULDER, printed_notches.HUB_ON_SHAFT)
+    assert far(printed_notches.CASES) == {case.name for case in ratings}
+
+
+def test_printed_bearings_notice_another_rating(monkeypatch):
+    catalogue = printed_bearings.Catalogue
+
+    def other(**data):
+        rating = float(data.pop("load_rating").removesuffix(" kN"))
+        return catalogue(load_rating=f"{1.01 * rating} kN", **data)
+
+    monkeypatch.setattr(printed_bearings, "Catalogue", other)
+    told = {"printed_ball_bearing_life", "printed_pair_rating"}
+    assert far(printed_bearings.CASES) == told
 
 
 def test_one_per_cent_of_the_shear_coefficient_is_not_ok(monkeypatch):

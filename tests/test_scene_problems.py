@@ -156,6 +156,7 @@ def test_a_place_for_a_position_is_sent_to_its_key(tmp_path):
         ("diameter", "od", "diameter"),
         ("seat_width", "kzz", "stiffness.kzz"),
         ("seat_width", "contact_angle", "catalogue.contact_angle"),
+        ("seat_width", "designation", "catalogue.designation"),  # and not position, which is alike
         ("seat_width", "seat_widht", "seat_width"),
     ],
 )

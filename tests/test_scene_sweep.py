@@ -171,11 +171,14 @@ def test_a_word_in_a_table_of_ones_own_is_a_word(tmp_path):
     assert rows["bearing.A.position"].tolist() == [0.015, 0.016]
 
 
-def test_data_of_one_bearing_that_are_kept_for_another_are_told():
+def test_inner_dimensions_of_one_bearing_are_left_out_for_another():
     rows = sg.sweep(GEARBOX, "bearing.B.catalogue.designation=7208 B,7310 B", **BEAM)
-    (caution,) = rows.cautions
-    assert "elements, element_diameter, pitch_diameter" in caution and '"7208 B"' in caution
-    assert sg.sweep(GEARBOX, "bearing.B.catalogue.elements=14,15", **BEAM).cautions == ()
+    (sentence,) = rows.task.variants.followed
+    assert "elements, element_diameter, pitch_diameter" in sentence and '"7208 B"' in sentence
+    assert rows["segment.right.diameter"].tolist() == [0.04, 0.05]
+    assert (
+        sg.sweep(GEARBOX, "bearing.B.catalogue.elements=14,15", **BEAM).task.variants.followed == ()
+    )
 
 
 def test_a_material_by_name_is_its_numbers(tmp_path):

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+import solidgear as sg
 from solidgear.core.loading import as_written
 from solidgear.strength.deflection.at_rest import deflect, deflection
 from solidgear.strength.load import AT_REST
@@ -89,3 +90,16 @@ def test_a_shaft_is_shown_with_its_bars_or_the_reason_why_it_has_none(run, tmp_p
     )
     assert model["displacement"]["pinion"]["z"]["bar"] > 0
     assert {"name", "model", "stations", "line", "ports", "bearings"} <= model.keys()
+
+
+def test_a_shaft_with_cuts_deflects_as_its_plain_part_and_says_so():
+    """Cuts change reactions by next to nothing; models asked for by name stay refused."""
+    keyed, asked = sg.load("geometry/pinion_keyed.toml"), {"load": "z=2 kN", "tol": 0.05}
+    found = sg.deflect(keyed, **asked)
+    assert any('keyway "key": left out' in caution for caution in found.cautions)
+    plain = sg.deflect(keyed.plain, **asked)
+    assert not any("left out" in caution for caution in plain.cautions)
+    for ours, theirs in zip(found.judge.compared, plain.judge.compared):
+        assert ours.value == pytest.approx(theirs.value, rel=1e-12, abs=1e-18)
+    with pytest.raises(sg.SolidgearError, match="of revolution"):
+        sg.deflect(keyed, "timoshenko", load="z=2 kN")

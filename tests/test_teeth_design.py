@@ -220,7 +220,7 @@ RANGE = "pinion.relief.tip+gear.relief.tip=0 um:8 um"
 
 def test_a_design_of_a_train_is_solved_at_every_point(rows):
     """The file as it is, then a relief; goals choose which numbers are solved."""
-    ends = Design((f"{RANGE}:2",))
+    ends = Design((RANGE,), search=True)
     tried = train_designs(GEARBOX, ends, ["transmission error"], None, None, None, True)
     values, (full, coast) = tried.solve([np.nan])
     assert values == {"pinion.relief.tip+gear.relief.tip": None}
@@ -274,6 +274,10 @@ def test_the_worst_of_several_rows_counts():
     assert least.value(rows) == (2e-6, None) and most.value(rows) == (1e-6, None)
     assert limit_of("transmission_error < 1.5 um").missing(rows) == pytest.approx(1 / 3)
     assert least.value([*rows, {}]) is None
+    skew = wish_of("min misalignment_in_plane")  # whichever way
+    assert (
+        skew.value([{"misalignment_in_plane": -2e-5}, {"misalignment_in_plane": 1e-5}])[0] == 2e-5
+    )
 
 
 def test_one_at_a_time_over_every_point_begins_at_the_first():

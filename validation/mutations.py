@@ -104,7 +104,7 @@ MUTATIONS = (
         "ratings",
         "bearings ** ROW_POWER[data.balls]",
         "bearings",
-        "tests/test_bearing_life.py::test_worked_examples_of_makers",
+        "tests/test_manual.py::test_case[printed_pair_rating-A]",
     ),
     Mutation(
         "life: f_0 without the outer ring",
@@ -1464,7 +1464,7 @@ MUTATIONS = (
         "Section.nominal",
         "section.second_moment - cubes / 12",
         "section.second_moment",
-        "tests/test_notches_norm.py::test_a_cross_hole",
+        "tests/test_manual.py::test_case[printed_norm_cross_hole-A]",
     ),
 )
 

@@ -16,7 +16,6 @@ from solidgear.comparison.recording import Findings, recorded
 from solidgear.core import (
     HARMONIC,
     LADDER,
-    Displayed,
     OpenNumbers,
     Record,
     Scene,
@@ -29,6 +28,7 @@ from solidgear.core import (
     pinned,
     without_axis,
 )
+from solidgear.core.display import Displayed
 from solidgear.core.judge.causes import SHOWN, attachment_causes, beam_causes, shoulder_cause
 from solidgear.core.judge.lumped import synthesise_all
 from solidgear.core.judge.quantities import usual

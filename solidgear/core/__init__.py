@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from solidgear.core.body import Block, Body, Supports, as_supports
     from solidgear.core.body.mode_names import ModeName
     from solidgear.core.body.surface import Surface
-    from solidgear.core.display import Displayed, Sheeted
+    from solidgear.core.display import Sheeted
     from solidgear.core.elements import ELEMENTS
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
     from solidgear.core.ladder.meshes import HARMONIC
     from solidgear.core.ladder.model import BEAM
     from solidgear.core.ladder.registry import LADDER
-    from solidgear.core.loading import explained, load
+    from solidgear.core.loading import as_written, explained, load
     from solidgear.core.machine.threads import pinned
     from solidgear.core.machine.whole_file import whole
     from solidgear.core.quantity import (
@@ -72,7 +72,6 @@ __all__ = [
     "Condensed",
     "DIMENSIONS",
     "DOF_NAMES",
-    "Displayed",
     "Document",
     "ELEMENTS",
     "HARMONIC",
@@ -106,6 +105,7 @@ __all__ = [
     "WITHIN",
     "WhereRecord",
     "as_supports",
+    "as_written",
     "bars_of_modes",
     "build",
     "change",
@@ -138,9 +138,9 @@ _WHERE = {
     "Body": "solidgear.core.body",
     "Supports": "solidgear.core.body",
     "as_supports": "solidgear.core.body",
+    "as_written": "solidgear.core.loading",
     "ModeName": "solidgear.core.body.mode_names",
     "Surface": "solidgear.core.body.surface",
-    "Displayed": "solidgear.core.display",
     "Sheeted": "solidgear.core.display",
     "ELEMENTS": "solidgear.core.elements",
     "SceneError": "solidgear.core.errors",

@@ -33,7 +33,6 @@ from solidgear.datasheet.facts import (
 )
 from solidgear.datasheet.numbers import Numbers, answered_numbers
 from solidgear.datasheet.result import Datasheet
-from solidgear.strength.acting import FEW
 from solidgear.strength.deflection import at_rest
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
@@ -104,7 +103,7 @@ def _under_load(
     scene = assembly.train.shafts[ALONE].scene
     cuts = tuple(feature.name for feature in scene.features) if LADDER[JUDGE].unfit(scene) else ()
     # what is cut out moves loads of bearings by next to nothing
-    deflected = at_rest.deflect(Assembly.of(scene.plain, kept=FEW) if cuts else assembly, point)
+    deflected = at_rest.deflect(assembly.settling(JUDGE), point)
     progress("stress")
     stressed = stress_at_rest(assembly, point, asked=settings)
     notch = worst_notch(stressed)

@@ -37,10 +37,8 @@ def misfits(scene: Scene) -> Iterator[str]:
     """
     on_axis = [b for b in scene.bearings if not b.patch]
     catalogued = [(b, data) for b in on_axis if (data := catalogue_of(b)) is not None]
-    for bearing, data in catalogued:
-        yield from _on_its_seat(scene, bearing, data)
-        yield from _beside_steps(scene, bearing, data)
-        yield from _inside(bearing, data)
+    for bearing, _ in catalogued:
+        yield from misfits_of(scene, bearing)
     for (a, data_a), (b, data_b) in combinations(catalogued, 2):
         distance, widths = abs(a.y - b.y), (data_a.seat_width, data_b.seat_width)
         if distance < (1 - REACH) * sum(widths) / 2:
@@ -49,6 +47,18 @@ def misfits(scene: Scene) -> Iterator[str]:
                 f"{_mm(distance)} apart, and they are {_mm(widths[0])} and {_mm(widths[1])} wide; "
                 "correct position or designation"
             )
+
+
+def misfits_of(scene: Scene, bearing: Bearing) -> Iterator[str]:
+    """Yield sentences on a bearing that does not fit its seat, a shoulder or given inner dimensions;
+    none without catalogue data or on a patch.
+    """
+    data = catalogue_of(bearing)
+    if data is None or bearing.patch:
+        return
+    yield from _on_its_seat(scene, bearing, data)
+    yield from _beside_steps(scene, bearing, data)
+    yield from _inside(bearing, data)
 
 
 def _label(bearing: Bearing, data: Catalogue) -> str:

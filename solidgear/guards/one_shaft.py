@@ -118,5 +118,10 @@ def mass_of(scene: Scene, body: Body) -> tuple[float, float | None]:
     where the mass has a closed form, None where it is that of a mesh.
     """
     if body.mesh.get("round", True):
-        return mass_properties(scene.outline).mass, ROUNDING
+        return round_mass(scene), ROUNDING
     return float(body.mass_matrix()[0, 0]), None
+
+
+def round_mass(scene: Scene) -> float:
+    """Compute the mass of the round part of a shaft without masses on it, kg."""
+    return mass_properties(scene.outline).mass

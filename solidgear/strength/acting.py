@@ -10,8 +10,15 @@ from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 import typer
 
 from solidgear.bearings.study import loaded_by
-from solidgear.core import SceneError, SolidgearError, Source, is_train, name_of_source, show
-from solidgear.core.loading import as_written
+from solidgear.core import (
+    SceneError,
+    SolidgearError,
+    Source,
+    as_written,
+    is_train,
+    name_of_source,
+    show,
+)
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group
 from solidgear.show.options import CaseName, refuse

@@ -71,7 +71,7 @@ class Carried:
         """Settle a train of :func:`with_sections` at an operating point; refused without a torque."""
         if point.torque == 0:
             raise SolidgearError("a torque of 0 N m presses no teeth together; give another one")
-        operating = Operating(Assembly(train), SHAFT)
+        operating = Operating(Assembly(train))
         return cls(operating, operating.at(point))
 
     def at(self, point: OperatingPoint) -> Carried:

@@ -23,19 +23,22 @@ SWEEP = (
         sometimes={"bodies": int, "cut": Any, "title": str},
     ),
 )
-#: numbers of the entries that vary stand by their paths
+#: values of the entries that vary and follow stand by their paths, a second goal by its name
 DESIGN = Printed(
-    keys={"number": int, "value": Number, "bar": Number, "kept": Any, "status": str}, named=Number
+    keys={"number": int, "value": Number, "bar": Number, "kept": Any, "status": str},
+    named=Number | str,
 )
 OPTIMISE = Printed(
     keys={
         "kind": Literal["optimum"],
         "scene": str,
-        "goal": str,
+        "goals": list[str],
         "keep": list[str],
         "best": int | None,
+        "front": list[int],
         "at_end": list[str],
-        "search": str,
+        "search": list[str],
+        "followed": list[str],
         "about_bars": str,
         "gain": Any,
         "designs": list[DESIGN],  # type: ignore[valid-type]

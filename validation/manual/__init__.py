@@ -7,6 +7,10 @@ from validation.manual.cases import (
     free_beams,
     held_beams,
     pinion,
+    printed_bearings,
+    printed_countershaft,
+    printed_notches,
+    printed_shafts,
     rods,
     solids,
     spur_train,
@@ -25,5 +29,9 @@ SUBJECTS = (
     pinion,
     spur_train,
     fillets,
+    printed_countershaft,
+    printed_shafts,
+    printed_notches,
+    printed_bearings,
 )
 CASES: dict[str, Case] = {case.name: case for subject in SUBJECTS for case in subject.CASES}

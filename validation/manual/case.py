@@ -176,6 +176,8 @@ class Case:
         A, B, C ... in this order.
     remarks : str
         What comes of it.
+    printed : bool
+        Whether it is an example of a book or catalogue, which the index lists apart.
 
     Raises
     ------
@@ -201,6 +203,7 @@ class Case:
     references: tuple[Reference, ...]
     models: tuple[Model, ...]
     remarks: str = ""
+    printed: bool = False
 
     def __post_init__(self) -> None:
         for name in ("name", "title", "problem", "geometry", "material", "supports", "asked"):

@@ -21,6 +21,12 @@ from validation.manual.case import Answer, Case, Line, Model
 FOLDER = Path(__file__).resolve().parent
 INDEX = "README.md"
 DIGITS = 9
+#: over the table of examples of books, and its columns
+PRINTED = (
+    "Shafts under several loads, notches and bearings of books, catalogues and solved "
+    "examinations. A number is equal where it rounds to the printed one."
+)
+EXAMPLE = ("example", "by", "equal", "farthest from print", "why", "")
 #: unknowns may move with the version of the mesh generator
 SAME_SIZE = 0.1
 
@@ -78,8 +84,17 @@ def index(cases: Mapping[str, Case], answers: Mapping[str, Mapping[str, Answer]]
         "",
     ]
     columns = ("case", "references", "modellings", "most of a tolerance used", "")
-    rows = [_entry(case, answers[case.name]) for case in cases.values()]
-    return "\n".join([*head, *markdown(columns, rows)]) + "\n"
+    rows = [_entry(case, answers[case.name]) for case in cases.values() if not case.printed]
+    examples = [
+        _example(case, letter, model, answers[case.name].get(letter, Answer({}, 0)))
+        for case in cases.values()
+        if case.printed
+        for letter, model in case.lettered
+    ]
+    parts = [*head, *markdown(columns, rows)]
+    if examples:
+        parts += ["", "## Printed examples", "", PRINTED, "", *markdown(EXAMPLE, examples)]
+    return "\n".join(parts) + "\n"
 
 
 def lines(case: Case, answers: Mapping[str, Answer]) -> list[tuple[str, Line]]:
@@ -106,6 +121,22 @@ def as_printed(line: Line) -> str:
     last = math.floor(math.log10(abs(line.reference.value) * line.tolerance / 100))
     digits = min(leading - last + 1, DIGITS)
     return f"{line.value:#.{digits}g}".rstrip(".")
+
+
+def _example(case: Case, letter: str, model: Model, answer: Answer) -> list[str]:
+    """Row of a printed example: how many numbers are equal to the digits, and the farthest one."""
+    judged = case.lines(model, answer.values)
+    same = sum(abs(line.deviation) <= line.reference.uncertainty for line in judged)
+    farthest = max(judged, key=lambda line: abs(line.deviation))
+    name = farthest.reference.quantity
+    return [
+        f"[{case.title}]({case.name}.md)",
+        f"{letter} {model.name}",
+        f"{same} of {len(judged)}",
+        f"{name}: {_per_cent(farthest.deviation, farthest.tolerance)} %",
+        model.why,
+        verdict(all(line.ok for line in judged)),
+    ]
 
 
 def _section(title: str, text: str) -> str:

@@ -144,6 +144,16 @@ class Model:
             return f"{unfit}: it would answer for the plain part"
         return unfit if strange else f"{unfit}, and no mesh has both"
 
+    def left_out(self, scene: Shaft) -> str:
+        """Return the features that the plain part is without where it stands for a scene, in words;
+        empty of a model that is made for features and of a scene that it holds for.
+        """
+        from solidgear.core.scene.shaft import feature_labels  # start-up: as above
+
+        if self.for_features or not self.unfit(scene):
+            return ""
+        return feature_labels(features_of(scene))
+
     def concerns(self, scene: Shaft) -> bool:
         """Return True where it is among the models solved for a scene when none is named."""
         sorts = {f.sort for f in features_of(scene)}

@@ -136,7 +136,7 @@ def _pieced(flat: Meridian, pieces: Pieces) -> Meridian:
         np.flatnonzero(inner & np.isin(parent, flat.inner)),
         arc,
         flat.centre[:, parent],
-        _conflicts(corners),
+        conflicts(corners),
     )
 
 
@@ -170,7 +170,7 @@ def _on_arc(flat: Meridian, cell: int, edge: int, local: np.ndarray) -> np.ndarr
     return flat.centre[:, cell] + np.array([c * va[0] - s * va[1], s * va[0] + c * va[1]])
 
 
-def _conflicts(corners: np.ndarray) -> np.ndarray:
+def conflicts(corners: np.ndarray) -> np.ndarray:
     """Return (4, m) a mask of sides that run the other way than in the first cell that has them."""
     first: dict[tuple[int, int], int] = {}
     out = np.zeros((4, len(corners)), bool)

@@ -62,7 +62,7 @@ def keys_of(path: str, tables: Tables) -> Keys:
         table = _child(table, keys[-1]) if remainder else _value(table, keys[-1])
     if isinstance(table, list) and len(table) == 1 and isinstance(table[0], Mapping):
         table = table[0]
-    if isinstance(table, (Mapping, list)):
+    if isinstance(table, (Mapping, list)) and keys[-1:] != ["material"]:  # which has names too
         names = table if isinstance(table, Mapping) else _names(table)
         reason = f"is no single entry; add one of {listed(names)}"
         raise SceneError(reason, field=label_of(tuple(keys), tables))

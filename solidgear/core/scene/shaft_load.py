@@ -322,7 +322,7 @@ class ShaftLoad(Placed):
             out.append(f"{self.name}: pressure angle 20 deg assumed")
         sides = self.pulls()
         if sides is not None and sides[1] > 0:
-            out.append(f"{self.name}: both sides of the belt pull along one direction")
+            out.append(f"{self.name}: both strands of the belt are taken as parallel")
         return tuple(out)
 
     @property

@@ -1,10 +1,10 @@
-"""Keys of scene and train files whose values are words, never numbers."""
+"""Keys of scene and train files whose values are words, never numbers, and those of whole numbers."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
 from functools import lru_cache
-from typing import Any, Literal, get_args, get_origin
+from typing import Annotated, Any, Literal, get_args, get_origin
 
 from pydantic.fields import FieldInfo
 
@@ -30,11 +30,24 @@ def is_text(keys: Keys) -> bool:
     (True, False)
     """
     names = tuple(key for key in keys if isinstance(key, str))
-    return names[-1:] != () and (names[-1] in NAMES or _is_text(names))
+    return names[-1:] != () and (names[-1] in NAMES or any(map(_of_words, _kinds(names))))
+
+
+def is_whole(keys: Keys) -> bool:
+    """Return True for an entry whose value is a whole number by the format of files.
+
+    Examples
+    --------
+    >>> is_whole(("pinion", "teeth")), is_whole(("pinion", "module"))
+    (True, False)
+    """
+    names = tuple(key for key in keys if isinstance(key, str))
+    return any(map(_of_whole_numbers, _kinds(names)))
 
 
 @lru_cache(maxsize=512)
-def _is_text(names: tuple[str, ...]) -> bool:
+def _kinds(names: tuple[str, ...]) -> tuple[Any, ...]:
+    """Return the types that an entry may have."""
     kinds: list[type[Model]] = [SceneFile, ScenePartFile, *added("file").values()]
     fields: list[FieldInfo] = []
     for name in names:
@@ -43,7 +56,7 @@ def _is_text(names: tuple[str, ...]) -> bool:
         kinds = [kind for field in fields for kind in _tables(field)] or kinds
         if name == "feature":
             kinds = [*FEATURES.values(), *BLENDS.values()]
-    return any(_of_words(field.annotation) for field in fields)
+    return tuple(field.annotation for field in fields)
 
 
 def _tables(field: FieldInfo) -> Iterator[type[Model]]:
@@ -64,3 +77,11 @@ def _of_words(kind: Any) -> bool:
     parts = [part for part in get_args(kind) if isinstance(part, type) or get_args(part)]
     parts = [part for part in parts if part is not type(None)]
     return kind is str or (bool(parts) and all(map(_of_words, parts)))
+
+
+def _of_whole_numbers(kind: Any) -> bool:
+    """Return True for a type of whole numbers alone, or of these and None."""
+    if get_origin(kind) is Annotated:
+        return _of_whole_numbers(get_args(kind)[0])
+    parts = [part for part in get_args(kind) if part is not type(None)]
+    return kind is int or (bool(parts) and all(map(_of_whole_numbers, parts)))

@@ -236,7 +236,8 @@ def _meant_key(key: str, fields: Mapping[str, FieldInfo | None]) -> str:
     if "stiffness" in fields and key in STIFFNESS_NAMES:  # entries of the table stiffness
         return f"stiffness.{key}"
     inside = [name for name, field in fields.items() if key in _keys_of(field)]
-    return near(key, fields) or (f"{inside[0]}.{key}" if inside else "")
+    # the same word in a table of its own is nearer than one that is alike
+    return f"{inside[0]}.{key}" if inside else near(key, fields)
 
 
 def _keys_of(field: FieldInfo | None) -> list[str]:

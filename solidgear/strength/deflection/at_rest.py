@@ -278,6 +278,24 @@ def deflect(
     )
 
 
+def deflect_plain(
+    assembly: Assembly,
+    point: OperatingPoint = AT_REST,
+    progress: Callable[[str], None] = lambda text: None,
+    every: bool = False,
+) -> Deflections:
+    """Compute deflection as :func:`deflect` by its usual models, all of revolution, of the plain parts
+    of shafts with cuts, with a caution that names these.
+    """
+    out = deflect(assembly.settling(MODELS[-1]), point, MODELS, progress, every)
+    cautions = tuple(
+        f"{cuts}: left out, since the models are of revolution; corrected or solid among the models "
+        "has cuts"
+        for cuts in assembly.left_out(MODELS[-1])
+    )
+    return replace(out, cautions=(*out.cautions, *cautions))
+
+
 def deflection(assembly: Assembly, point: OperatingPoint, *models: str) -> Deflection:
     """Compute the deflection of a train at an operating point by one model of each shaft, as
     :func:`deflections`.

@@ -35,7 +35,7 @@ def deflect(
         A scene or train: its file (TOML), the tables of one, or an object.
     models : str or sequence of str, optional
         Models of all shafts that are compared, the finest last; by default rigid, euler,
-        timoshenko and harmonic.
+        timoshenko and harmonic, of shafts with cuts of their plain parts.
     torque : str or float, optional
         Torque on a train, such as ``"115 N*m"`` (a number in N m); by default the operating points
         of the train, the first of which is compared.
@@ -83,4 +83,6 @@ def deflect(
     every_point = not chosen and len(assembly.train.operation) > 1
     names = (models,) if isinstance(models, str) else models or at_rest.MODELS
     with explained(source):
-        return at_rest.deflect(assembly, at, names, progress, every_point)
+        if models:
+            return at_rest.deflect(assembly, at, names, progress, every_point)
+        return at_rest.deflect_plain(assembly, at, progress, every_point)

@@ -1,4 +1,4 @@
-r"""Stress of a harmonic solid on a fillet: along the arc, around the axis, and the traction that a
+r"""Stress of a harmonic solid on the arc of a notch: along the arc, around the axis, and the traction that a
 free surface must not have.
 
 Strains are those of :func:`solidgear.core.models.harmonic.families.strains`; with the outward normal n and
@@ -30,12 +30,12 @@ PLACES, STEP = 65, 1e-3
 
 @dataclass(frozen=True)
 class ArcStress:
-    """Stress along the arc of a fillet, from the cylinder to the face.
+    """Stress along the arc of a notch, from its foot on: of a fillet from the cylinder to the face.
 
     Of harmonic n >= 1 these are amplitudes: `shear` goes with sin nt, the others with cos nt.
     """
 
-    angle: np.ndarray  #: (q,) from where the arc leaves the cylinder, rad
+    angle: np.ndarray  #: (q,) from the foot of the arc, rad
     along: np.ndarray  #: (q,) normal stress along the meridian, Pa
     around: np.ndarray  #: (q,) normal stress around the axis, Pa
     shear: np.ndarray  #: (q,) between both, Pa
@@ -43,22 +43,39 @@ class ArcStress:
     slope: np.ndarray  #: (2, q) derivative of `along` and `shear` along the normal, outwards, Pa/m
 
 
-class Arc:
-    """Arc of a fillet at the root of a step, on the mesh of the harmonic solid of a scene; refused
-    if the mesh has no such arc.
-    """
+@dataclass(frozen=True)
+class RootArc:
+    """Arc of a notch of revolution, from its foot, where it runs along the axis, to one side."""
 
-    def __init__(self, scene, body: Body, corner: Corner):
-        mesh: HarmonicMesh = body.geometry  # type: ignore[assignment]
-        flat = mesh.meridian
-        self.corner, self.scene = corner, scene
-        self._work = Work(scene, mesh)
+    name: str  #: of the notch, in words
+    #: centre, foot: (r, y) of its middle, and of its lowest place, m
+    centre: tuple[float, float]
+    foot: tuple[float, float]
+    radius: float  #: m
+    side: int  #: 1 where the arc lies at larger y than its foot, else -1
+
+    @classmethod
+    def of(cls, corner: Corner) -> RootArc:
+        """Return the arc of a fillet; refuse a chamfer, which has none."""
         if corner.centre is None:
             raise SolidgearError(f'{corner.kind} "{corner.name}" is no arc')
-        away = np.hypot(*(flat.centre - np.array(corner.centre)[:, None]))
-        cells = np.flatnonzero((flat.arc >= 0) & (away < 1e-6 * corner.radial))
+        what = f'fillet "{corner.name}"'
+        return cls(what, corner.centre, corner.on_cylinder, corner.radial, -corner.side)
+
+
+class Arc:
+    """Root of a notch on the mesh of a harmonic solid; refused if the mesh has no such arc."""
+
+    def __init__(self, scene, body: Body, root: RootArc):
+        mesh: HarmonicMesh = body.geometry  # type: ignore[assignment]
+        flat = mesh.meridian
+        self.root, self.scene = root, scene
+        self._work = Work(scene, mesh)
+        away = np.hypot(*(flat.centre - np.array(root.centre)[:, None]))
+        beside = root.side * (flat.points[1][flat.cells].mean(axis=0) - root.foot[1]) > 0
+        cells = np.flatnonzero((flat.arc >= 0) & (away < 1e-6 * root.radius) & beside)
         if not len(cells):
-            raise SolidgearError(f'the mesh has no arc of the fillet "{corner.name}"')
+            raise SolidgearError(f"the mesh has no arc of the {root.name}")
         self._cells = cells
 
     def stress(self, block: Block, u: np.ndarray) -> ArcStress:
@@ -81,12 +98,12 @@ class Arc:
         points = np.array([t, end] if edge in (LOW, HIGH) else [end, t])
         kind = next(k for k in self._work.shapes.kinds if cell in k.cells)
         sigma, place, jac = self._tensor(kind, cell, waves, values, points)
-        centre = np.array(self.corner.centre)[:, None]
+        centre = np.array(self.root.centre)[:, None]
         normal = (centre - place) / np.hypot(*(centre - place))
         tangent = np.array([-normal[1], normal[0]])
         across = _across(sigma, normal)
         traction = np.sqrt((across**2).sum(axis=0))
-        distance = np.abs(place - np.array(self.corner.on_cylinder)[:, None])
+        distance = np.abs(place - np.array(self.root.foot)[:, None])
         angle = np.arctan2(distance[1], np.abs(centre[0] - place[0]))
         # differences along reference coordinates, turned to the normal with tensors as they are there
         way = np.linalg.solve(jac, normal.T[:, :, None])[:, :, 0].T

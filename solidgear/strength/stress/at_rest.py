@@ -16,7 +16,7 @@ import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core import LADDER, Scene, Sheeted, listed
+from solidgear.core import LADDER, Scene, Sheeted, SolidgearError, listed
 from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
@@ -33,6 +33,7 @@ from solidgear.strength.stress.shaft import (
     local_stress,
     shaft_stress,
 )
+from solidgear.strength.stress.solid_notches import FINEST_LOCAL, SolidNotch, solid_notches
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
@@ -73,6 +74,9 @@ class StressedShaft:
     open: Mapping[str, tuple[float, float]]  #: the same of the amplitude on each fillet, Pa
     #: the same of the least safety of all notches; None of a duty table, or without ratings
     open_safety: tuple[float, float] | None = None
+    solids: tuple[SolidNotch, ...] = ()  #: grooves, and keyways and cross holes where asked for
+    #: sentences on features that no solid gives stress to
+    without_solid: tuple[str, ...] = ()
 
     @property
     def weak(self) -> tuple[str, ...]:
@@ -90,9 +94,15 @@ class StressSettings:
     tolerance: float = ENOUGH  #: relative error bar of form factors at which their meshes stop
     conditions: Conditions = Conditions()  #: of the rating by DIN 743
     duty: bool = False  #: whether ratings are over the duty table
+    #: the same of 3D solids at keyways and cross holes; None for no such solids
+    local: float | None = None
 
     def __post_init__(self) -> None:
         check_tolerance(self.tolerance)
+        if self.local is not None and not FINEST_LOCAL <= self.local < 1:
+            raise SolidgearError(
+                f"local = {self.local}: give a relative error bar of 3D solids from {FINEST_LOCAL:g} to 1"
+            )
 
 
 @dataclass(frozen=True)
@@ -125,7 +135,9 @@ class StressAtRest(Sheeted):
     def reached(self) -> bool:
         """Return whether the error bars of all form factors are within the tolerance."""
         notches = [notch for shaft in self.shafts for notch in shaft.found.notches]
-        return all(notch.found.widest <= self.asked.tolerance for notch in notches)
+        solids = [notch for shaft in self.shafts for notch in shaft.solids]
+        of_fillets = all(notch.found.widest <= self.asked.tolerance for notch in notches)
+        return of_fillets and all(notch.reached for notch in solids)
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data in SI that JSON can hold."""
@@ -151,8 +163,12 @@ def stress_at_rest(
     """
     load = loads_alone(assembly.train, point)
     progress(model)
-    train = _with_scenes(assembly.train, filleted)
-    settling = replace(assembly, train=_settling_train(train, model))
+    rounded = {
+        side: shaft.with_changes(scene=filleted(shaft.scene))
+        for side, shaft in assembly.train.shafts.items()
+    }
+    train = assembly.train.with_changes(shafts=rounded)
+    settling = replace(assembly, train=train).settling(model)
     usual = Operating(settling, model).at(point)
 
     def acting(choice: Choice) -> dict[str, ShaftLoads]:
@@ -276,25 +292,6 @@ def _torque_cautions(train: Train) -> Iterator[str]:
             )
 
 
-def _settling(scene: Scene, model: str) -> Scene:
-    """Return the plain part of a shaft, or all of it on a model that is made for features."""
-    return scene if LADDER[model].for_features else scene.plain
-
-
-def _settling_train(train: Train, model: str) -> Train:
-    """Return a train of such shafts, whose teeth act at their ports."""
-    meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
-    return _with_scenes(train.with_changes(meshes=meshes), lambda scene: _settling(scene, model))
-
-
-def _with_scenes(train: Train, change: Callable[[Scene], Scene]) -> Train:
-    """Return a train whose shafts have changed scenes."""
-    shafts = {
-        side: shaft.with_changes(scene=change(shaft.scene)) for side, shaft in train.shafts.items()
-    }
-    return train.with_changes(shafts=shafts)
-
-
 def _shafts(
     train: Train,
     acting: Callable[[Choice], dict[str, ShaftLoads]],
@@ -323,9 +320,10 @@ def _shafts(
         )
         further = [forces_of(scene, loads[side].loads, loads[side].gravity) for loads in variants]
         name = scene.name if train.is_one_shaft else side
+        solids = solid_notches(scene, stress, asked.tolerance, asked.local, progress)
         safety = None if asked.duty else _open_safety(scene, stress, further, asked.conditions)
         ranges = _ranges(stress, further)
-        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, safety))
+        shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, safety, *solids))
     return tuple(shafts), open_by
 
 

@@ -123,6 +123,10 @@ def stress(
         float,
         relative("--tol", "Error bar allowed for a form factor."),
     ] = 0.01,
+    local: Annotated[
+        float | None,
+        relative("--local", "Solve 3D solids at keyways and cross holes, to this error bar."),
+    ] = None,
     duty: Annotated[
         bool,
         typer.Option(
@@ -142,6 +146,7 @@ def stress(
             str(fidelity),
             **vars(acting),
             tol=tol,
+            local=local,
             conditions=rated.conditions(),
             duty=duty,
             progress=progress,

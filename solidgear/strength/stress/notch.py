@@ -24,14 +24,14 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from solidgear.core import TOUCH, Outline, Port, SolidgearError, coned, flexibility
 from solidgear.core.models.harmonic.body import harmonic
 from solidgear.core.solve.backends.matrix import FactorError
-from solidgear.strength.stress.arc_stress import Arc, ArcStress
+from solidgear.strength.stress.arc_stress import Arc, ArcStress, RootArc
 from solidgear.strength.stress.nominal import CrossSection
 
 if TYPE_CHECKING:
@@ -44,9 +44,24 @@ REACH = 4.0
 ROOM = 3.0
 
 
+class Notched(Protocol):
+    """Piece of a shaft around a notch of revolution, loaded at both ends."""
+
+    @property
+    def root(self) -> RootArc:
+        """Arc looked at, in the places of the piece."""
+
+    @property
+    def reference(self) -> tuple[CrossSection, float, float]:
+        """Section of nominal stress, the radius at which it is taken, and its place, m."""
+
+    def body(self, order: int, refinement: float) -> Body:
+        """Build the harmonic solid of the piece."""
+
+
 @dataclass(frozen=True)
 class Piece:
-    """Piece of a shaft, loaded at both ends; builders take it as a shaft."""
+    """Piece of a shaft around a fillet; builders take it as a shaft."""
 
     segments: tuple[Segment, ...]  #: from y = 0 on
     outline: Outline[Segment]
@@ -61,7 +76,31 @@ class Piece:
     @property
     def stations(self) -> tuple[Port, Port]:
         """Both ends as mean motions of their cross-sections."""
-        return _end("left", 0.0), _end("right", self.length)
+        return ends(self.length)
+
+    @property
+    def root(self) -> RootArc:
+        """Arc of the fillet."""
+        return RootArc.of(self.corner)
+
+    @property
+    def reference(self) -> tuple[CrossSection, float, float]:
+        """Outside, the cylinder that the fillet runs into; in a bore the weaker side of the step,
+        outside.
+        """
+        corner, place = self.corner, self.corner.on_cylinder[1]
+        owner, neighbour = (self.segments[k] for k in (corner.owner, corner.owner - corner.side))
+        inner, outer = owner.radius_at(place)
+        section = CrossSection(outer, inner)
+        if corner.surface == "outer":
+            return section, corner.r, place
+        inner, outer = neighbour.radius_at(neighbour.y1 if corner.side > 0 else neighbour.y0)
+        weaker = min(section, CrossSection(outer, inner), key=lambda side: side.second_moment)
+        return weaker, weaker.outer, place
+
+    def body(self, order: int, refinement: float) -> Body:
+        """Build the harmonic solid with layers towards the fillet."""
+        return harmonic(self, order=order, layers=LAYERS, edge_layers=0, refinement=refinement)
 
 
 def piece_around(scene: Scene, name: str, reach: float = REACH) -> Piece:
@@ -138,6 +177,11 @@ def _part(segment: Segment, start: float, end: float) -> Segment:
     )
 
 
+def ends(length: float) -> tuple[Port, Port]:
+    """Return both ends of a piece of a length, m, as mean motions of their cross-sections."""
+    return _end("left", 0.0), _end("right", length)
+
+
 def _end(name: str, y: float) -> Port:
     return Port(name=name, y=y, lo=y, hi=y, attachment="section")
 
@@ -170,11 +214,43 @@ class Factor:
 
 @dataclass(frozen=True)
 class Step:
-    """One order of the sequence that a fillet was solved with."""
+    """One order of the sequence that a notch was solved with."""
 
     order: int
     unknowns: int
     factors: Mapping[str, float]  #: by unit load
+
+
+class NotchFactors(Protocol):
+    """Stress concentration of a notch of revolution, over the nominal stress of a section."""
+
+    @property
+    def name(self) -> str:
+        """Name of the notch."""
+
+    @property
+    def section(self) -> CrossSection:
+        """Section of nominal stress."""
+
+    @property
+    def radius(self) -> float:
+        """Radius at which nominal stress is taken, m."""
+
+    @property
+    def factors(self) -> Mapping[str, Factor]:
+        """Factors by unit load."""
+
+    @property
+    def profiles(self) -> Mapping[str, ArcStress]:
+        """Stress along the arc over nominal stress, by unit load."""
+
+    @property
+    def reference(self) -> float:
+        """Place of the section forces, m."""
+
+    @property
+    def widest(self) -> float:
+        """Largest error bar of the factors of tension, bending and torsion, relative."""
 
 
 @dataclass(frozen=True)
@@ -200,7 +276,12 @@ class FilletFactors:
     @property
     def widest(self) -> float:
         """Largest error bar of the factors of tension, bending and torsion, relative."""
-        return max(self.factors[load].bar / self.factors[load].value for load in UNIT_LOADS[:3])
+        return widest(self.factors)
+
+
+def widest(factors: Mapping[str, Factor]) -> float:
+    """Return the largest relative error bar of the factors of tension, bending and torsion."""
+    return max(factors[load].bar / factors[load].value for load in UNIT_LOADS[:3])
 
 
 def fillet_factors(
@@ -219,64 +300,66 @@ def fillet_factors(
     cells, and `reach` is as of :func:`piece_around`. Cells that fold around the fillet are refused.
     """
     piece = piece_around(scene, name, reach)
-    section, radius = _reference(piece)
     corner = next(c for c in scene.outline.corners if c.name == name)
-    result: FilletFactors | None = None
+    solution = solved(piece, tolerance, orders, refinement)
+    section, radius, _ = piece.reference
+    return FilletFactors(
+        name, corner, section, radius, solution.factors, solution.profiles, solution.steps
+    )
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Factors and profiles of a notch by the last order, and all orders."""
+
+    factors: Mapping[str, Factor]
+    profiles: Mapping[str, ArcStress] = field(repr=False)
+    steps: tuple[Step, ...]
+
+
+def solved(
+    piece: Notched, tolerance: float, orders: Sequence[int] = ORDERS, refinement: float = 1.0
+) -> Solution:
+    """Solve a piece around a notch, order by order until error bars are within a tolerance."""
+    result: Solution | None = None
     for order in orders:
-        unknowns, profiles = _solved(piece, section, radius, order, refinement)
+        unknowns, profiles = _solved(piece, order, refinement)
         before = result.factors if result else {}
         factors = {k: _factor(profile, k, before.get(k)) for k, profile in profiles.items()}
         values = {load: factor.value for load, factor in factors.items()}
         steps = (*(result.steps if result else ()), Step(order, unknowns, values))
-        result = FilletFactors(name, corner, section, radius, factors, profiles, steps)
-        if result.widest <= tolerance:
+        result = Solution(factors, profiles, steps)
+        if widest(factors) <= tolerance:
             break
     assert result is not None, "no order was asked for"
     return result
 
 
-def _solved(
-    piece: Piece, section: CrossSection, radius: float, order: int, refinement: float
-) -> tuple[int, dict[str, ArcStress]]:
+def _solved(piece: Notched, order: int, refinement: float) -> tuple[int, dict[str, ArcStress]]:
     """Return unknowns of a mesh and the profiles on it; the mesh itself, which may be large, ends
     here.
     """
     try:
         with np.errstate(invalid="ignore"):  # of cells that fold; their matrix is refused
-            body = harmonic(piece, order=order, layers=LAYERS, edge_layers=0, refinement=refinement)
-        profiles = _profiles(piece, body, section, radius)
+            body = piece.body(order, refinement)
+        profiles = _profiles(piece, body)
     except FactorError:
         raise SolidgearError(
-            f'fillet "{piece.corner.name}": cells of order {order} around it fold; make it or its '
+            f"{piece.root.name}: cells of order {order} around it fold; make it or its "
             "neighbours smaller"
         ) from None
     return sum(block.size for block in body.blocks if block.mirror is None), profiles
 
 
-def _reference(piece: Piece) -> tuple[CrossSection, float]:
-    """Return the section of nominal stress, and the radius at which it is taken, m: outside, of the
-    cylinder that the fillet runs into; in a bore the outer one of the weaker side of the step.
-    """
-    corner = piece.corner
-    owner, neighbour = (piece.segments[k] for k in (corner.owner, corner.owner - corner.side))
-    inner, outer = owner.radius_at(corner.on_cylinder[1])
-    section = CrossSection(outer, inner)
-    if corner.surface == "outer":
-        return section, corner.r
-    inner, outer = neighbour.radius_at(neighbour.y1 if corner.side > 0 else neighbour.y0)
-    weaker = min(section, CrossSection(outer, inner), key=lambda side: side.second_moment)
-    return weaker, weaker.outer
-
-
-def _profiles(piece: Piece, body: Body, section: CrossSection, a: float) -> dict[str, ArcStress]:
+def _profiles(piece: Notched, body: Body) -> dict[str, ArcStress]:
     """Return the stress along the arc over nominal stress, by unit load."""
     fields = flexibility(body).fields
     index = {block.name: k for k, block in enumerate(body.blocks)}
-    arc = Arc(piece, body, piece.corner)
+    arc = Arc(piece, body, piece.root)
     start, end = (port.y for port in body.ports)
-    place = piece.corner.on_cylinder[1]
+    section, a, place = piece.reference
     pull = np.array([-1.0, 1.0])
-    # force and moment at both ends, of a bending block; the moment of the force is zero at the fillet
+    # force and moment at both ends, of a bending block; the moment of the force is zero at the notch
     bend = np.array([0.0, -1.0, 0.0, 1.0])
     shear = np.array([-1.0, start - place, 1.0, place - end])
     loads = {

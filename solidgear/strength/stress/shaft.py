@@ -29,7 +29,7 @@ from solidgear.strength.stress.nominal import (
     nominal_stress,
 )
 from solidgear.strength.stress.norm.steels import source_of, strength_of
-from solidgear.strength.stress.notch import ENOUGH, FilletFactors, fillet_factors
+from solidgear.strength.stress.notch import ENOUGH, FilletFactors, NotchFactors, fillet_factors
 from solidgear.strength.stress.published import PUBLISHED
 from solidgear.strength.stress.rating import Rating, rated
 from solidgear.strength.stress.section_forces import SectionForces, forces_of
@@ -312,8 +312,8 @@ def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
     return 2 * corner.r, 2 * (end if corner.side > 0 else start)
 
 
-def local_stress(fillet: FilletFactors, forces: np.ndarray) -> Local:
-    """Return the stress on the arc of a fillet under section forces (6,), where the normal stress
+def local_stress(fillet: NotchFactors, forces: np.ndarray) -> Local:
+    """Return the stress on the arc of a notch under section forces (6,), where the normal stress
     is largest.
     """
     section, a = fillet.section, fillet.radius

@@ -32,6 +32,7 @@ from solidgear.strength.stress.notch_tables import (
 )
 from solidgear.strength.stress.section_forces import SectionForces
 from solidgear.strength.stress.shaft import Notch, ShaftStress
+from solidgear.strength.stress.solid_sheet import solid_factors, solid_stress
 
 #: of section forces: name, place among the six, and SI unit
 COMPONENTS = (
@@ -134,6 +135,8 @@ def shaft_tables(
         surface_stress(stress, shaft.open, units, stressed.open_by),
         form_factors(stress),
         drawn_notches(stress, units),
+        solid_stress(shaft.solids, units),
+        solid_factors(shaft.solids),
         safeties(stress),
         *(rating(name, record, units) for name, record in rated[: None if all_ratings else 1]),
     ]
@@ -149,6 +152,7 @@ def sentences(stressed: StressAtRest, units: Units = ENGINEERING) -> list[str]:
     for shaft in stressed.shafts:
         lead = f"{shaft.name}: " if len(stressed.shafts) > 1 else ""
         shaft_remarks = remarks(shaft.found, units)
+        shaft_remarks += [f"{remark}." for remark in shaft.without_solid]
         if not shaft.found.notches:
             shaft_remarks.insert(0, "no shoulder has a fillet, so there is no stress on one.")
         if shaft.weak:

@@ -26,6 +26,7 @@ def stress(
     case: str | None = None,
     drive: Mapping[str, str | float] | list[str] | None = None,
     tol: float = ENOUGH,
+    local: float | None = None,
     conditions: Mapping[str, Any] | Conditions | None = None,
     duty: bool = False,
     progress: Callable[[str], None] = lambda text: None,
@@ -42,6 +43,9 @@ def stress(
         As of :func:`solidgear.deflect`.
     tol : float
         Error bar allowed for a form factor, relative.
+    local : float, optional
+        Error bar allowed for form factors of keyways and cross holes, relative, for which 3D
+        solids are solved, some seconds each; without it they have none.
     conditions : mapping or Conditions, optional
         Of the rating by DIN 743: ``roughness``, ``ultimate_at_size``, ``yield_at_size``,
         ``treated_diameter``, ``hardening``, ``hard_surface``, ``surface_strength``,
@@ -76,7 +80,7 @@ def stress(
     """
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
-    settings = StressSettings(tol, conditions, duty)
+    settings = StressSettings(tol, conditions, duty, local)
     assembly, at = Acting(torque, of, point, weight, load, case, drive).read(source)
     with explained(source):
         return stress_at_rest(assembly, at, model, settings, progress)

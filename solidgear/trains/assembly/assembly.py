@@ -468,6 +468,27 @@ class Assembly:
                 sentences += matrices_cautions(side, shaft.matrices, self.scenes[side])
         return (*sentences, *housing_cautions(self.train, self.places))
 
+    def left_out(self, model: str) -> tuple[str, ...]:
+        """Return the cuts and teeth that a model of revolution leaves out of all shafts, in words."""
+        labels = (LADDER[model].left_out(scene) for scene in self.scenes.values())
+        return tuple(label for label in labels if label)
+
+    def settling(self, model: str) -> Assembly:
+        """Return the same train with shafts as a model has them on which only bearings settle: without
+        cuts, unless it is made for them, and with teeth that act at their ports.
+        """
+        train = self.asked_train
+        if not self.left_out(model) and not any(mesh.local_harmonics for mesh in train.meshes):
+            return self
+        shafts = {
+            side: shaft.with_changes(scene=shaft.scene.plain)
+            if LADDER[model].left_out(shaft.scene)
+            else shaft
+            for side, shaft in train.shafts.items()
+        }
+        meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
+        return replace(self, train=train.with_changes(shafts=shafts, meshes=meshes))
+
     def on_flank(self, coast: bool) -> Assembly:
         """Return the same train with the teeth in contact on one flank: `coast` is True for that
         which the file does not name.

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from solidgear.bearings.bearing_life import left_open, life_of
 from solidgear.bearings.duty import LivesOverPoints, PointLife
 from solidgear.bearings.solved import AS_STATED
@@ -26,16 +28,26 @@ def train_lives(train: Train) -> list[LivesOverPoints]:
     settled = [
         _states(Operating(assembly, choice=choice), train) for choice in (AS_STATED, *choices)
     ]
+    return lives_in(train, settled, unknown)
+
+
+def lives_in(
+    train: Train, settled: Sequence[Sequence[OperatingState]], unknown: str = ""
+) -> list[LivesOverPoints]:
+    """Return the life of every catalogue bearing of a train in states at operating points, as stated
+    and then for each choice of `unknown` data; refused without catalogue bearings.
+    """
     lives_by_bearing = []
-    for side, scene in scenes.items():
-        for bearing in scene.bearings:
+    for side, shaft in train.shafts.items():
+        for bearing in shaft.scene.bearings:
             if bearing.catalogue is None:
                 continue
-            end, points = f"{side}.{bearing.name}", []
-            for k, point in enumerate(train.operation):
-                places = [(s[k].bearings[end], s[k].equilibrium.relative[end]) for s in settled]
-                speed = point.speed_of(side, train.turns)
-                life = life_of(bearing, scene.lubrication, unknown, speed, places)
+            end, oil = f"{side}.{bearing.name}", shaft.scene.lubrication
+            points = []
+            for states in zip(*settled):
+                point = states[0].point
+                places = [(s.bearings[end], s.equilibrium.relative[end]) for s in states]
+                life = life_of(bearing, oil, unknown, point.speed_of(side, train.turns), places)
                 points.append(PointLife(point.label, life, point.share, point.hours))
             name = bearing.name if train.is_one_shaft else end
             lives_by_bearing.append(LivesOverPoints(name, tuple(points)))

@@ -58,8 +58,8 @@ LOOP = (
 
 
 class Operating:
-    """A train with the shafts at models (bodies or ``rigid``, one for each shaft or one for all),
-    to be settled at any operating point; `choice` is the place in the ranges of catalogue data,
+    """A train with the shafts at models (bodies or ``rigid``, one for each shaft or one for all; by
+    default Timoshenko beams without cuts), to be settled at any operating point; `choice` is the place in the ranges of catalogue data,
     and bearings with a load of their own are refused.
 
     Examples
@@ -74,6 +74,8 @@ class Operating:
     """
 
     def __init__(self, assembly: Assembly, *models: str, choice: Choice = AS_STATED):
+        if not models:
+            assembly = assembly.settling(SHAFT)
         self.assembly, self.models, self.choice = assembly, models or (SHAFT,), choice
         if assembly.train.is_one_shaft:
             return

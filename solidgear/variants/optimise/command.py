@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
@@ -11,15 +12,18 @@ import typer
 
 from solidgear.show.command import command
 from solidgear.show.options import AUTO, BY_MODEL, AutoChoice, CaseName, Run, relative
-from solidgear.show.panel import GREY, Panel, Series, readout
-from solidgear.show.plot import WIDE, Chart
+from solidgear.show.plot import Make
 from solidgear.show.remarks import document_under
-from solidgear.show.scales import Axis
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import NUMBER, Column, Table, text
 from solidgear.show.units import ENGINEERING, Units
+from solidgear.variants.optimise.charts import FRONT, KEPT, designs_chart, front_chart, look_of
 from solidgear.variants.optimise.optimise import Design, Optimum
 from solidgear.variants.optimise.optimise import optimise as optimised
+from solidgear.variants.optimise.sentences import ROUNDING, sentences
+
+#: designs that a terminal shows
+FEW = 5
 
 
 @command
@@ -29,26 +33,35 @@ def optimise(
     vary: Annotated[
         list[str] | None,
         typer.Option(
-            "--vary", help='PATH=LOW:HIGH, such as "bearing.B.position=180 mm:240 mm"; repeatable.'
+            "--vary",
+            help='PATH=LOW:HIGH, such as "bearing.B.position=180 mm:240 mm", or a list, PATH=A,B,C, '
+            'such as "bearing.A.catalogue.designation=7208 B,7210 B"; repeatable.',
         ),
     ] = None,
     goal: Annotated[
-        str,
+        list[str],
         typer.Option(
             "--goal",
-            help='"max NUMBER" or "min NUMBER", such as "max bending 1"; of a train a column of its '
-            'sweep, such as "min transmission_error".',
+            help='"max NUMBER" or "min NUMBER", such as "max bending 1", "max life" or another column '
+            "of the sweep of the file; given twice it makes a front.",
         ),
     ],
     keep: Annotated[
         list[str] | None,
         typer.Option(
-            "--keep", help='Limit, such as "C_zz < 5 um/kN" or "mass < 12 kg"; repeatable.'
+            "--keep",
+            help='Limit, such as "C_zz < 5 um/kN", "mass < 12 kg" or "life > 20000 h"; repeatable.',
         ),
     ] = None,
     keep_sum: Annotated[
         list[str] | None,
         typer.Option("--keep-sum", help="PATH+PATH: their sum stays as in the file."),
+    ] = None,
+    follow: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--follow", help="PATH: a diameter that follows the bore of a designation that varies."
+        ),
     ] = None,
     model: Annotated[
         AutoChoice,
@@ -61,6 +74,10 @@ def optimise(
         relative(
             "--tol", "Bar allowed of every design; a tenth of the scene's tolerance by default."
         ),
+    ] = None,
+    most: Annotated[
+        int | None,
+        typer.Option("--most", help="Designs that are solved at most; 500 for each goal."),
     ] = None,
     point: Annotated[
         str | None,
@@ -86,8 +103,10 @@ def optimise(
             goal,
             keep or (),
             keep_sum=keep_sum or (),
+            follow=follow or (),
             model=None if model == AUTO else str(model),
             tol=tol,
+            most=most,
             point=point,
             every_point=every_point,
             progress=progress,
@@ -98,96 +117,106 @@ def optimise(
 
 
 def optimum_sheet(optimum: Optimum, units: Units = ENGINEERING) -> Sheet:
-    """Return the sheet of a search, whose numbers are in SI as those of the file are."""
-    title = f"{optimum.scene}: {optimum.goal}"
+    """Return the sheet of a search."""
+    title = f"{optimum.scene}: {' and '.join(map(str, optimum.goals))}"
+    tables = {"designs": designs(optimum)}
+    charts: dict[str, Make] = {"designs": partial(designs_chart, optimum, title)}
+    if optimum.front:
+        tables = {"front": front(optimum)} | tables
+        charts = {"front": partial(front_chart, optimum, title, units)}
     return Sheet(
         name="optimum",
         title=title,
         lead=f"Every design solved by {optimum.solved}.",
-        tables=[designs(optimum)],
+        tables=[*tables.values()],
         data=optimum.results,
-        charts={"designs": partial(designs_chart, optimum, title)},
-        lines={"designs": designs(optimum)},
-        notes=optimum.sentences,
+        charts=charts,
+        lines=tables,
+        notes=[*sentences(optimum, units)],
         reached=optimum.best is not None,
-        terminal=Terminal(heading=[optimum.scene]),
-        words={"designs": "The goal in every design solved, each with its error bar."},
+        terminal=Terminal(
+            heading=[optimum.scene],
+            tables=[front(optimum) if optimum.front else _best_designs(optimum)],
+        ),
+        words={
+            "designs": "The goal in every design solved, each with its error bar.",
+            "front": "Both goals in every design solved; the line joins those that none beats in both.",
+        },
     )
-
-
-KEPT, MISSED, BEST = "keeps every limit", "misses a limit", "best"
-LOOKS = {
-    KEPT: Series("#00805e"),
-    MISSED: Series("#b3305c", "square"),
-    BEST: Series("#0072b2", "diamond"),
-}
 
 
 def designs(optimum: Optimum) -> Table:
     """Return the table of all designs in the order in which they were solved."""
-    labels = list(optimum.path[0].values)
+    note = "SI. Design 0 is the file as it is."
+    return _table(optimum, optimum.path, "Designs", note)
+
+
+def _best_designs(optimum: Optimum) -> Table:
+    """Return the table of the few best designs, the best first."""
+    upward = optimum.goal.upward
+    sound = [design for design in optimum.path if design.kept and design.value is not None]
+    few = sorted(sound, key=lambda d: (-1 if upward else 1) * (d.value or 0.0))[:FEW]
+    return _table(optimum, few, "Best designs", "SI. Design 0 is the file as it is.")
+
+
+def front(optimum: Optimum) -> Table:
+    """Return the table of the designs of a front."""
+    return _table(optimum, optimum.front, "Front", "SI. None of these is beaten in both goals.")
+
+
+def _table(optimum: Optimum, rows: Sequence[Design], title: str, note: str) -> Table:
+    """Return a table of designs with values and goals."""
+    words = {
+        label
+        for design in optimum.path
+        for label, value in design.values.items()
+        if isinstance(value, str)
+    }
     columns = [
         Column("", kind=NUMBER, name="design"),
-        *(Column(label, write="{:.6g}".format, kind=NUMBER) for label in labels),
-        Column(optimum.goal.name, write="{:.6g}".format, kind=NUMBER),
-        Column("bar", write="{:.2g}".format, kind=NUMBER, name=f"{optimum.goal.name} error bar"),
-        replace(text(""), name="status"),
+        *(
+            replace(text(_head(label)), name=label)
+            if label in words
+            else Column(_head(label), write="{:.6g}".format, kind=NUMBER, name=label)
+            for label in optimum.path[0].values
+        ),
     ]
-    rows = [
-        [d.number, *d.values.values(), d.value, d.bar, _remark(optimum, d)] for d in optimum.path
+    for goal in optimum.goals:
+        columns += [
+            Column(goal.name, write="{:.6g}".format, kind=NUMBER),
+            Column("bar", write="{:.2g}".format, kind=NUMBER, name=f"{goal.name} error bar"),
+        ]
+    columns.append(replace(text(""), name="status"))
+    cells = [
+        [
+            design.number,
+            *design.values.values(),
+            *_goals(optimum, design),
+            _remark(optimum, design),
+        ]
+        for design in rows
     ]
-    note = "SI. Design 0 is the file as it is."
-    return Table("Designs", columns, rows, note, style="ruled")
+    return Table(title, columns, cells, note, style="ruled")
+
+
+def _goals(optimum: Optimum, design: Design) -> list[float | None]:
+    """Return the numbers of all goals of a design, with error bars."""
+    if not design.goals:
+        return [None, None] * len(optimum.goals)
+    out: list[float | None] = []
+    for value, bar in design.goals:
+        out += [value, bar if bar and bar > ROUNDING * abs(value) else None]
+    return out
+
+
+def _head(label: str) -> str:
+    """Return the path of an entry as the head of a column: the last word below the others."""
+    before, _, last = label.rpartition(".")
+    return f"{before}\n{last}" if before and "+" not in label else label
 
 
 def _remark(optimum: Optimum, design: Design) -> str:
     if design.status != "ok":
         return design.status[:60]
-    return _look(optimum, design).replace(KEPT, "")
-
-
-def _look(optimum: Optimum, design: Design) -> str:
-    if design is optimum.best:
-        return BEST
-    return KEPT if design.kept else MISSED
-
-
-def designs_chart(optimum: Optimum, title: str, width: float = WIDE) -> Chart:
-    """Draw the goal over the one entry that varies, or over the number of the design."""
-    labels = list(optimum.path[0].values)
-    solved = [
-        (design, design.value, design.bar or 0.0)
-        for design in optimum.path
-        # the file as it is may not hold the entry
-        if design.value is not None and (len(labels) > 1 or design.values[labels[0]] is not None)
-    ]
-    over = labels[0] if len(labels) == 1 else "design"
-    x = [d.values[over] if len(labels) == 1 else d.number for d, _, _ in solved]
-    low = min(value - bar for _, value, bar in solved)
-    high = max(value + bar for _, value, bar in solved)
-    room = 0.08 * (high - low) or abs(high)
-    edge = 0.03 * (max(x) - min(x)) or 1.0
-    panel = Panel(
-        Axis(over if len(labels) > 1 else f"{over}, SI", (min(x) - edge, max(x) + edge)),
-        Axis(f"{optimum.goal.name}, SI", (low - room, high + room)),
-        300.0,
-        series=LOOKS,
-        legend={"orient": "top"},
-    )
-    bars = [
-        {"x": place, "y": value - bar, "y2": value + bar}
-        for place, (_, value, bar) in zip(x, solved)
-        if bar
-    ]
-    panel.draw({"type": "rule", "color": GREY, "strokeWidth": 2}, bars)
-    points = []
-    for place, (design, value, _) in zip(x, solved):
-        numbers = {**design.values, optimum.goal.name: value}
-        facts = [
-            (label, "as it is" if number is None else f"{number:.6g}", "")
-            for label, number in numbers.items()
-        ]
-        words = readout(f"design {design.number}", *facts)
-        points.append({"x": place, "y": value, "name": _look(optimum, design), "readout": words})
-    panel.draw({"type": "point", "filled": True, "size": 60}, points)
-    return Chart([[panel]], width, title)
+    look = look_of(optimum, design)
+    return "" if look == KEPT else "front" if look == FRONT else look

@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
 from solidgear.core import SolidgearError, Source
-from solidgear.variants.optimise.wish import Rows
+from solidgear.variants.optimise.wish import FIRST, Rows
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
 from solidgear.variants.sweep.file_task import FileTask, without_bars
 from solidgear.variants.sweep.file_variants import POINT, scene_variants
 from solidgear.variants.sweep.scene_task import STATICS, SceneTask
-from solidgear.variants.sweep.train_task import ASKED, CONTACT, MODES, TrainTask, train_task
+from solidgear.variants.sweep.shaft_numbers import ANSWER, columns_of
+from solidgear.variants.sweep.shaft_numbers import ASKED as ASKED_OF_SHAFT
+from solidgear.variants.sweep.train_task import ASKED, CONTACT, MASS, MODES, TrainTask, train_task
 
 #: natural frequencies that a goal may be of
 MOST_MODES = 12
@@ -48,25 +49,59 @@ class Designs:
         return varied, self.task.rows(range(self.points))
 
 
-def scene_designs(scene: Source, design: Design, model: str | None, tol: float | None) -> Designs:
-    """Return the designs of a scene: each by the cheapest mesh whose bars are within the tolerance, or
-    by a model that is given.
+def scene_designs(
+    scene: Source, design: Design, names: Sequence[str], model: str | None, tol: float | None
+) -> Designs:
+    """Return the designs of a scene with the numbers of these names: each by the cheapest mesh whose
+    bars are within the tolerance, or by a model that is given.
     """
     variants = scene_variants(scene, design, EXAMPLE)
     base = variants.variant(0)  # the file as it is
     variants.refuse_hopeless()
+    variants.refuse_unknown_words()
     tol = base.ask.tolerance / 10 if tol is None else tol
     solved, unbarred = "the cheapest mesh whose bars are within the tolerance", ""
     if model is not None:
         solved = f"the {model} model, without error bars"
         unbarred = without_bars(model)
-    task = SceneTask(variants, model, tol, {}, MOST_MODES)
-    return Designs(task, base.title or base.name, 1, solved, unbarred, _numbers_of_scene)
+    columns = {kind: [*columns_of(base, (kind,), barred=False)] for kind in AT_REST}
+    kinds, modes = _kinds_of_shaft(columns, names)
+    task = SceneTask(variants, model, tol, {}, modes, ask=kinds)
+    names_at_rest = [
+        *map(str, STATICS),
+        "mass",
+        *(name for group in columns.values() for name in group),
+    ]
+
+    def names_of(row: dict[str, Any]) -> list[str]:
+        modes_of_row = [
+            str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v
+        ]
+        return [*names_at_rest, *modes_of_row]
+
+    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of)
 
 
-def _numbers_of_scene(row: dict[str, Any]) -> list[str]:
-    modes = [str(v) for k, v in row.items() if k.startswith("mode") and k != "model" and v]
-    return [*map(str, STATICS), "mass", *modes]
+#: kinds of numbers of a shaft that have columns of their own
+AT_REST = tuple(kind for kind in ASKED_OF_SHAFT if kind != ANSWER)
+
+
+def _kinds_of_shaft(
+    columns: dict[str, list[str]], names: Sequence[str]
+) -> tuple[tuple[str, ...], int]:
+    """Return the kinds of numbers that names are of, and how many natural frequencies they want."""
+    kinds, modes = set[str](), 1
+    statics = {*map(str, STATICS)}
+    for name in names:
+        spelled = {name, name.replace(" ", "_")}
+        kind = next((kind for kind, group in columns.items() if spelled & {*group}), ANSWER)
+        if name == "mass":
+            continue
+        kinds.add(kind)
+        if kind == ANSWER and name not in statics:
+            first = FIRST.fullmatch(name)
+            modes = max(modes, int(first["number"]) if first else MOST_MODES)
+    return tuple(kind for kind in ASKED_OF_SHAFT if kind in kinds), min(modes, MOST_MODES)
 
 
 def train_designs(
@@ -93,9 +128,8 @@ def train_designs(
     usual = task.usual
     models = task.models if model is None else dict.fromkeys(task.models, model)
     task = replace(task, models=models, ask=_kinds(task, names))
-    task.variants.values[0, : len(design.vary)] = math.nan
-    task.variants.variant(0)  # the file as it is
     task.variants.refuse_hopeless()
+    task.variants.refuse_unknown_words()
     points = len(usual.operation) if every_point else 1
     solved = f"the {model} model" if model is not None else "harmonic solids"
     if task.ask == (CONTACT,):
@@ -109,10 +143,10 @@ def train_designs(
 def _kinds(task: TrainTask, names: Sequence[str]) -> tuple[str, ...]:
     """Return the kinds of numbers that names are of; names of no column are those of modes."""
     kinds = set()
-    for name in names:
+    for name in {*names} - {MASS}:
         kind = next((k for k in ASKED if _is_of(replace(task, ask=(k,)), name)), MODES)
         kinds.add(kind)
-    return tuple(kind for kind in ASKED if kind in kinds)
+    return tuple(kind for kind in ASKED if kind in kinds) or (MODES,)
 
 
 def _is_of(task: TrainTask, name: str) -> bool:

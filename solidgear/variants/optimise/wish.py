@@ -10,9 +10,12 @@ from typing import Any
 
 from solidgear.core import SceneError, SolidgearError, show
 from solidgear.core.scene.units import quantity, si_factor
+from solidgear.show.units import ENGINEERING
 from solidgear.variants.sweep.curves import FORCE, MISALIGNMENT, misalignment_unit
 from solidgear.variants.sweep.entries import amount, plain_number
+from solidgear.variants.sweep.life_numbers import BASIC, HOURS, LIFE, STATIC
 from solidgear.variants.sweep.scene_task import MOST_MODES, STATICS
+from solidgear.variants.sweep.shaft_numbers import LOADS, LOCAL, MOVED, SAFETIES
 from solidgear.variants.sweep.tooth_numbers import TOOTH_UNITS
 
 #: rows of a design: of a shaft one, of a train one for each operating point
@@ -20,32 +23,36 @@ Rows = Sequence[dict[str, Any]]
 
 _GOAL = re.compile(r"\s*(?P<sense>max|min)(?:imi[sz]e)?\s+(?P<name>.+?)\s*", re.I)
 _KEEP = re.compile(r"\s*(?P<name>.+?)\s*(?P<sense>[<>])=?\s*(?P<value>.+?)\s*")
-_FIRST = re.compile(r"f(?P<number>[1-9]\d*)")
+#: natural frequencies by their numbers
+FIRST = re.compile(r"f(?P<number>[1-9]\d*)")
 
 
 @dataclass(frozen=True)
 class Wish:
     """A number of a design that should be large or small, or stay beyond a limit."""
 
-    name: str  #: ``mass``, a compliance or stiffness, ``f1``, or a mode such as ``bending 1``
+    name: str  #: column of a sweep, ``f1``, or a mode such as ``bending 1``
     upward: bool  #: large is good
     limit: float | None = None  #: SI; None of a goal
 
     def value(self, rows: Rows) -> tuple[float, float | None] | None:
-        """Return the worst value of a design over its rows and the error bar of it, SI; None where a
-        row has no number, or bar.
+        """Return the worst value of a design over its rows and the error bar of it, SI, of a
+        misalignment its size; None where a row has no number, or bar.
         """
         values = []
         for row in rows:
             column = self._column(row)
             if row.get(column) is None:
                 return None
-            values.append((float(row[column]), row.get(f"{column} bar")))
+            number = float(row[column])
+            # a misalignment has a direction, and either is as bad
+            size = abs(number) if column.startswith(MISALIGNMENT) else number
+            values.append((size, row.get(f"{column} bar")))
         worst = min if self.upward else max
         return worst(values, key=lambda number: number[0])
 
     def _column(self, row: dict[str, Any]) -> str:
-        if first := _FIRST.fullmatch(self.name):
+        if first := FIRST.fullmatch(self.name):
             return f"f{first['number']}_hz"
         for k in range(1, MOST_MODES + 1):
             if row.get(f"mode{k}") == self.name:
@@ -63,10 +70,16 @@ class Wish:
         short = self.limit - (value - bar) if self.upward else (value + bar) - self.limit
         return short / abs(self.limit or 1.0)
 
+    @property
+    def unit(self) -> str:
+        """Unit of the number in SI, as of :class:`solidgear.show.units.Units`; empty for a ratio."""
+        return unit_of(self.name)
+
     def __str__(self) -> str:
         if self.limit is None:
             return f"{'max' if self.upward else 'min'} {self.name}"
-        return f"{self.name} {'>' if self.upward else '<'} {self.limit:.6g}"
+        limit = ENGINEERING.text(self.limit, self.unit).strip()
+        return f"{self.name} {'>' if self.upward else '<'} {limit}"
 
 
 def wish_of(text: str) -> Wish:
@@ -86,43 +99,72 @@ def limit_of(text: str) -> Wish:
         raise SolidgearError(
             f'`keep` {show(text, 40)}: write NUMBER < VALUE, such as "C_zz < 5 um/kN" or "f1 > 600 Hz"'
         )
+    name = match["name"]
+    if name == LIFE and match["value"].endswith((" h", " hours")):
+        name = HOURS
     try:
-        limit = _limit_in_si(match["name"], match["value"])
+        limit = _limit_in_si(name, match["value"])
     except SceneError as error:
         raise SolidgearError(f"`keep` {show(text, 40)}: {error}") from None
-    return Wish(match["name"], match["sense"] == ">", limit)
+    return Wish(name, match["sense"] == ">", limit)
 
 
 def _limit_in_si(name: str, value: str) -> float:
     if (number := plain_number(value)) is not value:
         return float(number)
-    unit = _unit_of(name)
-    if unit is not None:
-        return _in_si(value, unit)
-    return quantity(value, "mass" if name == "mass" else "frequency")
+    unit = unit_of(name).partition(" moved")[0].partition(" stressed")[0]
+    if unit in ("kg", "Hz"):
+        return quantity(value, "mass" if unit == "kg" else "frequency")
+    if unit in ("h", "rev"):
+        match = amount(value)
+        if match is None or match[2] not in (unit, *WORDS[unit]):
+            raise SceneError(f"write a number, or one in {unit}", value=show(value))
+        return float(match[1])
+    return _in_si(value, unit)
 
 
-#: endings of columns of trains, and their units
-ENDINGS = {".radial": "N", ".axial": "N", "_force": "N", ".moment": "N*m"}
+#: units of lives in words
+WORDS = {"h": ("hours",), "rev": ("revolutions",)}
+#: units of columns by their names, by their beginnings, and by their endings
+NAMED = {
+    "mass": "kg",
+    LIFE: "rev",
+    BASIC: "rev",
+    HOURS: "h",
+    "torque": "N m",
+    LOCAL: "Pa stressed",
+    **dict.fromkeys((STATIC, *SAFETIES), ""),
+    **TOOTH_UNITS,
+}
+BEGINNINGS = {FORCE: "N", **{f"{moved}_": unit for moved, unit in MOVED.items()}, **TOOTH_UNITS}
+ENDINGS = {
+    "_force": "N",
+    f".{LIFE}": "rev",
+    f".{STATIC}": "",
+    **{f".{load}": unit for load, unit in LOADS.items()},
+}
 
 
-def _unit_of(name: str) -> str | None:
-    """Return the SI unit of a compliance or stiffness of a shaft, or of a column of a train; None for
-    masses and frequencies.
+def unit_of(name: str) -> str:
+    """Return the SI unit of a number of a design; Hz of any that is no column.
+
+    Examples
+    --------
+    >>> unit_of("deflection_pinion"), unit_of("pinion.A.radial"), unit_of("bending 1")
+    ('m moved', 'N', 'Hz')
     """
     static = next((q for q in STATICS if str(q) == name), None)
     if static is not None:
         return static.unit
     column = name.replace(" ", "_")
+    if column in NAMED:
+        return NAMED[column]
     if column.startswith(MISALIGNMENT):
-        number = column.removeprefix(f"{MISALIGNMENT}_").replace("_", " ")
-        return misalignment_unit(number).removesuffix(" moved")
-    if column.startswith(FORCE):
-        return "N"
-    for number, unit in (*TOOTH_UNITS.items(), *ENDINGS.items()):
-        if column.startswith(number) or column.endswith(number):
-            return unit.removesuffix(" moved").removesuffix(" stressed")
-    return None
+        return misalignment_unit(column.removeprefix(f"{MISALIGNMENT}_").replace("_", " "))
+    for beginning, unit in BEGINNINGS.items():
+        if column.startswith(beginning):
+            return unit
+    return next((unit for ending, unit in ENDINGS.items() if column.endswith(ending)), "Hz")
 
 
 def _in_si(value: str, si_unit: str) -> float:

@@ -23,7 +23,8 @@ from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import R, Task, run
 from solidgear.variants.sweep.shaft_task import REDUCED, task_of
 from solidgear.variants.sweep.sheet import sweep_sheet
-from solidgear.variants.sweep.train_task import BY_DEFAULT, shafts_in
+from solidgear.variants.sweep.train_task import BY_DEFAULT
+from solidgear.variants.sweep.train_variants import shafts_in
 
 #: ending of a chart that is a page
 PAGE = ".html"
@@ -76,6 +77,12 @@ class Rows(Group):
         ),
     ] = None
     jobs: Annotated[int, typer.Option("--jobs", "-j", help="Processes on this machine.")] = 1
+    follow: Annotated[
+        list[str] | None,
+        typer.Option(
+            "--follow", help="PATH: a diameter that follows the bore of a designation that varies."
+        ),
+    ] = None
     dask: Annotated[
         str | None,
         typer.Option(
@@ -111,6 +118,7 @@ class Rows(Group):
             one_at_a_time=self.one_at_a_time,
             table=self.table,
             keep_sum=tuple(self.keep_sum or ()),
+            follow=tuple(self.follow or ()),
         )
 
     @contextmanager
@@ -153,8 +161,8 @@ class OfTrain(Group):
         list[str] | None,
         typer.Option(
             "--ask",
-            help="Of a train: what rows tell, system-modes, response, deflect or contact; "
-            "repeatable, all but contact by default.",
+            help="Numbers of rows, repeatable. Of a shaft: answer (by default), deflect, bearing or "
+            "stress. Of a train: system-modes, response, deflect (by default), bearing or contact.",
         ),
     ] = None
     every_point: Annotated[
@@ -241,7 +249,6 @@ def sweep(
             "--gear": pair.gear != MODEL,
             "--shaft": bool(pair.shafts),
             "--mesh": bool(train_rows.mesh),
-            "--ask": bool(train_rows.ask),
             "--every-point": train_rows.every_point,
             **reduced.given,
         }
@@ -251,6 +258,7 @@ def sweep(
             "model": None if automatic else str(model.name),
             "options": {} if automatic else options(model.pairs),
             "reduction_tolerance": None if tolerance == REDUCED else tolerance,
+            "ask": train_rows.ask or (),
         }
     with Progress(quiet=run.as_json or not sys.stderr.isatty()) as progress:
         # before a file of rows is begun

@@ -12,14 +12,23 @@ import numpy as np
 from solidgear.core import SolidgearError, listed
 from solidgear.variants.sweep.entries import Entry, in_si
 from solidgear.variants.sweep.file_variants import POINT, FileVariants
+from solidgear.variants.sweep.life_numbers import HOURS, STATIC
+from solidgear.variants.sweep.shaft_numbers import BAR, FATIGUE, MOVED, YIELD
 from solidgear.variants.sweep.tooth_numbers import CHARTED, TOOTH_UNITS, of_mesh
 
 #: rows that curves are made of
 MOST_CURVED = 5000
 #: units of misalignment that are angles; the others are lengths
 UNITS = dict.fromkeys(("shaft angle", "in plane", "across"), "rad moved")
-#: stiffness of a shaft in a table, and its units
-STATICS = {"K_zz": "N/m", "K_thx": "N m/rad"}
+#: numbers of a shaft in a table, and their units
+STATICS = {
+    "K_zz": "N/m",
+    "K_thx": "N m/rad",
+    HOURS: "h",
+    STATIC: "",
+    FATIGUE: "",
+    YIELD: "",
+}
 #: beginning of the columns of mesh forces
 FORCE = "mesh_force"
 #: and of the numbers of a misalignment
@@ -58,7 +67,7 @@ class Curves:
     x: np.ndarray  #: (n,) ascending
     labels: tuple[str, ...]  #: names of the rows where they have some, such as operating points
     frequencies: list[Curve]
-    statics: list[Curve]  #: stiffness at the lumped point of a shaft, for a table
+    statics: list[Curve]  #: numbers of a shaft at rest, for a table
     mesh_force: list[Curve]  #: one for each mesh, or none
     misalignment: list[Curve]
     #: radial, axial: loads of bearings
@@ -76,12 +85,13 @@ class Curves:
     def empty(self) -> bool:
         """True where no variant could be solved."""
         at_rest = self.misalignment, self.radial, self.axial, self.teeth
-        return not any((self.frequencies, *at_rest, self.peak_force))
+        return not any((self.frequencies, self.statics, *at_rest, self.peak_force))
 
     @property
     def on_terminal(self) -> bool:
         """True where the table of the rows has numbers beside the one that varies."""
-        return bool(self.frequencies or self.mesh_force or self.peak_hz or self.teeth)
+        lines = self.frequencies, self.statics, self.mesh_force, self.peak_hz, self.teeth
+        return any(lines)
 
 
 def chartable(variants: FileVariants) -> Entry:
@@ -165,7 +175,12 @@ def curves_of(
             for column in modes
             for line in curve(column[:-3], column, "Hz", f"mode{column[1:-3]}")
         ],
-        statics=[line for name, si in STATICS.items() for line in curve(name, name, si)],
+        statics=[
+            line
+            for column in columns
+            if (si := at_rest_unit(column)) is not None
+            for line in curve(column, column, si)
+        ],
         mesh_force=[
             line
             for column in columns
@@ -185,6 +200,14 @@ def curves_of(
         peak_force=curve("largest peak", "peak1_force", "N", "peak1_mode"),
         teeth={number.replace("_", " "): lines for number in CHARTED if (lines := teeth(number))},
     )
+
+
+def at_rest_unit(column: str) -> str | None:
+    """Return the unit of a number of a shaft at rest that has a place in a table; None of any other."""
+    if column.endswith(BAR):
+        return None
+    moved = (unit for word, unit in MOVED.items() if column.startswith(f"{word}_"))
+    return STATICS.get(column, next(moved, None))
 
 
 def misalignment_unit(name: str) -> str:

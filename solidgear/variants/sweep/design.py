@@ -48,6 +48,9 @@ class Design:
     one_at_a_time: bool = False
     table: Path | None = None  #: of variants, in place of `vary`
     keep_sum: tuple[str, ...] = ()  #: ``PATH+PATH``: sums that stay as they are in the file
+    #: ``PATH``: diameters that follow the bore of a designation that varies
+    follow: tuple[str, ...] = ()
+    search: bool = False  #: whether a search chooses the values, from the file as it is
 
     def points(
         self,
@@ -60,7 +63,7 @@ class Design:
         """Return the points of the design on files by their names; an error shows the `example`."""
         rows = None
         if self.table is None:
-            varied = entries_of(self.vary, files, owner)
+            varied = entries_of(self.vary, files, owner, self.search)
         else:
             self._refuse_others()
             varied, rows = entries_of_table(self.table, files, owner)
@@ -69,7 +72,11 @@ class Design:
         varied += added
         if not varied:
             raise SolidgearError(f'nothing is varied; give for example `vary` "{example}"')
-        if rows is not None:
+        if self.search:
+            turns = [*itertools.product(*(entry.values for entry in added))]
+            as_it_is = [math.nan] * (len(varied) - len(added))
+            values = np.array([(*as_it_is, *turn) for turn in turns], float)
+        elif rows is not None:
             turns = [*itertools.product(*(entry.values for entry in added))]
             values = np.array([(*row, *turn) for row in rows for turn in turns], float)
         elif self.one_at_a_time:
@@ -106,6 +113,8 @@ class Design:
             out["one_at_a_time"] = True
         if self.keep_sum:
             out["keep_sum"] = list(self.keep_sum)
+        if self.follow:
+            out["follow"] = list(self.follow)
         return out or None
 
 

@@ -1,8 +1,9 @@
 """Entries of a file that vary: ``PATH=VALUES`` texts, by paths of :mod:`solidgear.core.scene.paths`.
 
 VALUES are ``a:b:n``, ``log:a:b:n`` or a list ``a,b,c``; a number is plain (SI) or has a unit. A list
-may hold texts as well, such as designations; in quotes a number is a text too. ``PATH+PATH=VALUES``
-gives several entries the same value. A value goes into the tables of the file as a person would have
+may hold texts as well, such as designations; in quotes a number is a text too. Of whole numbers, such
+as teeth, ``a:b`` is all of them; of others it is a range whose places a search may choose.
+``PATH+PATH=VALUES`` gives several entries the same value. A value goes into the tables of the file as a person would have
 written it there, so that all rules of the file apply.
 
 A study over entries puts them into tables here, combines them by a ``Design``, reads them by
@@ -33,7 +34,7 @@ from solidgear.core.scene.paths import (
     label_of,
     replace_entry,
 )
-from solidgear.core.scene.text_keys import is_text
+from solidgear.core.scene.text_keys import NAMES, is_text, is_whole
 from solidgear.core.scene.units import quantity
 
 _NUMBER = re.compile(r"([+-]?(?:\d+\.?\d*|\.\d+)(?:[eE][+-]?\d+)?)\s*(.*)", re.S)
@@ -72,6 +73,8 @@ class Entry:
     #: values of a list as they are written, whose `values` count from 0; empty of a range
     words: tuple[str | float | bool, ...] = ()
     text: bool = False  #: whether its values are words, whatever they look like
+    #: whether a search may choose any value between both ends
+    open: bool = False
 
     @property
     def file(self) -> str:
@@ -135,15 +138,23 @@ def assignment(text: str, form: str) -> tuple[str, str]:
     return path.strip(), values
 
 
+#: forms of the values of a sweep, and of a search
+SWEPT = 'PATH=VALUES, such as "mesh.stiffness=log:1e8 N/m:1e9 N/m:5"'
+SEARCHED = (
+    'PATH=LOW:HIGH, such as "bearing.B.position=180 mm:240 mm", or PATH=A,B,C, such as '
+    '"bearing.A.catalogue.designation=6208,6210"'
+)
+
+
 def entries_of(
-    texts: Iterable[str], files: Mapping[str, Tables], owner: Owner
+    texts: Iterable[str], files: Mapping[str, Tables], owner: Owner, search: bool = False
 ) -> tuple[Entry, ...]:
-    """Read all ``PATH=VALUES`` texts of a study over files, by their names; refuse unknown entries
-    and the same twice.
+    """Read all ``PATH=VALUES`` texts of a study over files, by their names, those of a `search` with
+    open ranges; refuse unknown entries and the same twice.
     """
     out: list[Entry] = []
     for text in texts:
-        path, spec = assignment(text, 'PATH=VALUES, such as "mesh.stiffness=log:1e8 N/m:1e9 N/m:5"')
+        path, spec = assignment(text, SEARCHED if search else SWEPT)
         try:
             places = _places(path, files, owner)
             in_file = entry(places[0].keys, files[places[0].file])
@@ -151,7 +162,9 @@ def entries_of(
             if as_text or ":" not in spec:
                 values = _listed(spec.split(","), as_text)
             else:
-                values = _range(spec)
+                values = _range(spec, all(is_whole(place.keys) for place in places), search)
+            if search and len(values["values"]) < 2:
+                raise SceneError("holds one value alone, and nothing is left to choose")
         except SceneError as error:
             raise SolidgearError(f"`vary` {text}: {error}") from None
         out.append(_entry(places, in_file, as_text, values))
@@ -203,15 +216,19 @@ def _entry(
 
 def _places(path: str, files: Mapping[str, Tables], owner: Owner) -> tuple[Place, ...]:
     """Return the places that a path stands for, several with a plus between them."""
-
-    def place(path: str) -> Place:
-        file, within = owner(path)
-        keys = keys_of(within, files[file])
-        return Place(file, label_of(keys, files[file]), keys)
-
     if "+" not in path or _is_held(path, files, owner):
-        return (place(path),)
-    return tuple(place(part.strip()) for part in path.split("+"))
+        return (place_of(path, files, owner),)
+    return tuple(place_of(part.strip(), files, owner) for part in path.split("+"))
+
+
+def place_of(path: str, files: Mapping[str, Tables], owner: Owner) -> Place:
+    """Return the place that a path stands for; SceneError where there is none."""
+    file, within = owner(path)
+    keys = keys_of(within, files[file])
+    for k in range(1, len(keys)):
+        if is_text(keys[:k]) and keys[k - 1] not in NAMES:  # a word, which holds no table
+            raise SceneError(explained(SceneError("unknown key"), path, files))
+    return Place(file, label_of(keys, files[file]), keys)
 
 
 def _is_held(path: str, files: Mapping[str, Tables], owner: Owner) -> bool:
@@ -320,13 +337,17 @@ def explained(error: SceneError, path: str, files: Mapping[str, Tables]) -> str:
     return f"{before}{unknown}{hint}" if hint else error.sentence
 
 
-def _range(spec: str) -> dict[str, Any]:
-    """Return the fields of an entry that goes over a range, ``a:b:n`` or ``log:a:b:n``."""
+def _range(spec: str, whole_key: bool, search: bool) -> dict[str, Any]:
+    """Return the fields of an entry that goes over a range, ``a:b:n`` or ``log:a:b:n``; ``a:b`` of a
+    key of whole numbers, or of a search.
+    """
     spacing, parts = "linear", [part.strip() for part in spec.split(":")]
     if parts[0] == "log":
         spacing, parts = "log", parts[1:]
-    if len(parts) != 3:
-        raise SceneError('values are "a:b:n", "log:a:b:n" or a list "a,b,c"')
+    counted = len(parts) == 3
+    if not counted and (len(parts) != 2 or not (whole_key or search)):
+        forms = '"a:b", "a:b:n", "log:a:b:n"' if search else '"a:b:n", "log:a:b:n"'
+        raise SceneError(f'values are {forms} or a list "a,b,c"')
     units: list[str] = []
     ends: list[float] = []
     whole = True
@@ -344,17 +365,28 @@ def _range(spec: str) -> dict[str, Any]:
         if bool(unit) != bool(first):
             raise SceneError("give both ends with a unit, or none")
         ends.append(float(number) if unit == first else value / of_first)
-    if not parts[2].isdecimal() or not 2 <= int(parts[2]) <= MOST:
+    if counted and not (parts[2].isdecimal() and 2 <= int(parts[2]) <= MOST):
         raise SceneError(f"a:b:n needs a whole number n of 2 or more values, not {parts[2]!r}")
+    if ends[0] == ends[1] and search:
+        raise SceneError("both ends are the same, and nothing is left to choose")
     if spacing == "log" and not ends[0] * ends[1] > 0:
         raise SceneError("a logarithmic range needs both ends above zero")
-    between = np.linspace if spacing == "linear" else np.geomspace
-    values = between(ends[0], ends[1], int(parts[2])).tolist()
+    if whole_key and not whole:
+        raise SceneError("both ends must be whole numbers")
+    values = ends
+    if counted:
+        between = np.linspace if spacing == "linear" else np.geomspace
+        values = between(ends[0], ends[1], int(parts[2])).tolist()
+    elif whole_key:
+        if abs(ends[1] - ends[0]) >= MOST:
+            raise SceneError(f"are more than the {MOST} values that one entry takes")
+        values = [*map(float, range(int(min(ends)), int(max(ends)) + 1))]
     return {
         "values": tuple(dict.fromkeys(values)),
         "spacing": spacing,
         "unit": units[0],
         "integers": whole and all(value == int(value) for value in values),
+        "open": not (counted or whole_key),
     }
 
 
@@ -366,6 +398,9 @@ def _has_words(places: Sequence[Place], in_file: object) -> bool:
 
 def _listed(cells: Iterable[str], as_text: bool) -> dict[str, Any]:
     """Return the fields of an entry with a list of values, of which a number may be a text."""
+    cells = [*cells]
+    if not all(map(str.strip, cells)):
+        raise SceneError("a value of the list is empty")
     words = tuple(dict.fromkeys(_word(cell.strip(), as_text) for cell in cells))
     return {"words": words, "values": tuple(map(float, range(len(words)))), "spacing": "list"}
 

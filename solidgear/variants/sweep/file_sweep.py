@@ -24,6 +24,7 @@ def sweep(
     one_at_a_time: bool = False,
     table: str | os.PathLike | None = None,
     keep_sum: str | Iterable[str] = (),
+    follow: str | Iterable[str] = (),
     out: str | os.PathLike | None = None,
     jobs: int = 1,
     dask: str | None = None,
@@ -49,6 +50,8 @@ def sweep(
         Of variants of your own, a CSV file with paths as heads, in place of `vary`.
     keep_sum : str or iterable of str
         ``PATH+PATH``: sums that stay what they are in the file.
+    follow : str or iterable of str
+        ``PATH``: diameters that follow the bore of a designation that varies, beside the seat.
     out : path, optional
         Keeps the rows; the same sweep goes on from there.
     jobs : int
@@ -62,16 +65,17 @@ def sweep(
     **how
         Of a shaft and of a train: `n`, the natural frequencies of a row.
 
-        Of a shaft: `model`, the cheapest mesh within the tolerance by default, variant by variant
-        (rows of a model that is given have no error bars); `options` of its builder; `tolerance`,
-        relative, that of the scene by default. Where springs and positions of bearings vary alone,
+        Of a shaft: `ask`, some of ``answer`` (by default), ``deflect``, ``bearing`` and ``stress``;
+        `model`, the cheapest mesh within the tolerance by default, variant by variant (rows of a
+        model that is given have no error bars); `options` of its builder; `tolerance`, relative,
+        that of the scene by default. Where springs and positions of bearings vary alone,
         one body does for all, and `reduction_tolerance` is the relative error that its reduction
         may leave in frequencies, 1e-6 by default.
 
         Of a train: `pinion` and `gear`, models as of ``system-modes``, and `models` of shafts by
-        any name; `ask`, some of ``system-modes``, ``response``, ``deflect`` and ``contact``; `max_frequency` in
-        Hz; `point`, an operating point by its name or number; `every_point`, a row for each of
-        them; `mesh`, whose transmission error drives the train; `local_harmonics` of every mesh;
+        any name; `ask`, some of ``system-modes``, ``response``, ``deflect``, ``bearing`` and
+        ``contact``; `max_frequency` in Hz; `point`, an operating point by its name or number;
+        `every_point`, a row for each of them; `mesh`, whose transmission error drives the train; `local_harmonics` of every mesh;
         `reduction`, `kept` and `settings` as of an assembly; `tolerance` that meshes of harmonic
         shafts may leave.
 
@@ -97,7 +101,8 @@ def sweep(
     """
     texts = names_in(vary)
     variants = None if table is None else Path(table)
-    design = Design(texts, sample, seed, one_at_a_time, variants, names_in(keep_sum))
+    sums, diameters = names_in(keep_sum), names_in(follow)
+    design = Design(texts, sample, seed, one_at_a_time, variants, sums, diameters)
     task = task_of(source, design, **how)
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv" if out is None else Path(out)

@@ -162,7 +162,7 @@ class FileTask(Task[Swept]):
     @property
     def cautions(self) -> tuple[str, ...]:
         """Sentences on data that contradict each other in variants that can be solved."""
-        return self.variants.cautions
+        return ()
 
     @property
     def misalignments(self) -> tuple[str, ...]:

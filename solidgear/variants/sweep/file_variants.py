@@ -2,19 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.core import Scene, SceneError, SolidgearError, Source, document_of, listed, show
+from solidgear.core import Scene, SceneError, SolidgearError, Source, document_of
 from solidgear.core.loading import scene_of
-from solidgear.core.scene.paths import Tables, label_of
+from solidgear.core.scene.paths import Tables
 from solidgear.core.scene.paths import entry as value_in_file
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.entries import Entry, KeptSum, explained, put_in
+from solidgear.variants.sweep.entries import Entry, KeptSum, explained, in_si, put_in
+from solidgear.variants.sweep.following import Follower, followers_of, list_in
 
 #: name of the file that was asked about, among others that it names
 MAIN = ""
@@ -22,23 +23,6 @@ MAIN = ""
 POINT = "point"
 #: variants that are tried for one that the rules of the files let pass
 TRIED = 2000
-#: keys of catalogue data that a designation does not share with another
-DATA_OF_DESIGNATION = (
-    "bore",
-    "outer_diameter",
-    "width",
-    "load_rating",
-    "static_rating",
-    "fatigue_limit",
-    "elements",
-    "element_diameter",
-    "element_length",
-    "pitch_diameter",
-    "contact_angle",
-    "conformity",
-    "row_distance",
-)
-
 #: a scene or a train
 T = TypeVar("T")
 
@@ -53,6 +37,7 @@ class FileVariants(Generic[T]):
     values: np.ndarray  #: not a number where a variant leaves an entry as it is in the file
     sums: tuple[KeptSum, ...] = ()  #: sums that stay as they are in the file
     design: Design = Design()  #: design that `values` are the points of
+    followers: tuple[Follower, ...] = ()  #: what follows the entries that vary
 
     def __len__(self) -> int:
         return len(self.values)
@@ -64,6 +49,10 @@ class FileVariants(Generic[T]):
         for kept in self.sums:
             file = kept.places[0].file
             out[kept.label] = kept.remainder(put_in(self.files[file], file, self.entries, row))
+        for follower in self.followers:
+            tables = self.put(follower.file, self.entries, row)
+            numbers = {p.label: in_si(value_in_file(p.keys, tables)) for p in follower.numbers}
+            out.update(numbers)
         return out
 
     @property
@@ -72,7 +61,9 @@ class FileVariants(Generic[T]):
         out: dict[str, type] = {
             entry.label: float if entry.numeric else str for entry in self.entries
         }
-        return out | dict.fromkeys((kept.label for kept in self.sums), float)
+        further = [kept.label for kept in self.sums]
+        further += [place.label for follower in self.followers for place in follower.numbers]
+        return out | dict.fromkeys(further, float)
 
     @property
     def plan(self) -> dict[str, Any]:
@@ -84,9 +75,9 @@ class FileVariants(Generic[T]):
         return {"vary": vary, "sample": self.design.plan}
 
     @property
-    def cautions(self) -> tuple[str, ...]:
-        """Sentences on data that contradict each other in variants that can be solved."""
-        return tuple(data_of_other_designations(self.entries, self.files))
+    def followed(self) -> tuple[str, ...]:
+        """Sentences on entries that follow those that vary."""
+        return tuple(follower.sentence for follower in self.followers)
 
     def in_turn(self, numbers: Iterable[int]) -> list[int]:
         """Return variants in the order in which they are solved."""
@@ -124,8 +115,17 @@ class FileVariants(Generic[T]):
                 tables = put_in(tables, name, (entry,), (value,))
         for kept in self.sums:
             tables = kept.put(tables) if kept.places[0].file == name else tables
+        for follower in self.followers:
+            tables = follower.put(tables) if follower.file == name else tables
         # entries that vary may lie beside the ranges that a file states, which no row depends on
         return {key: table for key, table in tables.items() if key != "uncertain"}
+
+    def fitting(self, name: str, tables: Tables, scene: Scene) -> Scene:
+        """Return the scene of changed tables of a file, unless it does not go with a value that varies."""
+        for follower in self.followers:
+            if follower.file == name:
+                follower.refuse(tables, scene)
+        return scene
 
     # --------------------------------------------------------------------------------- refusals
     def first_sound(self) -> tuple[int, T]:
@@ -146,6 +146,20 @@ class FileVariants(Generic[T]):
         """Refuse an entry that no file may have, whatever its value."""
         for entry in self.entries:
             self._refuse_whatever_its_value(entry)
+
+    def refuse_unknown_words(self) -> None:
+        """Refuse a word of a list that the rules of the file do not know for its entry, such as a
+        designation that there is not.
+        """
+        for entry in self.entries:
+            for value in entry.values if entry.text and entry.label != POINT else ():
+                try:
+                    self.read((entry,), (value,))
+                except SceneError as error:
+                    places = [place.keys for place in entry.places]
+                    unknown = [p for p in error.problems if p.path in places and p.value]
+                    for problem in unknown:
+                        raise SolidgearError(f"`vary` {problem.sentence}") from None
 
     def _refuse_whatever_its_value(self, entry: Entry) -> None:
         first: SceneError | None = None
@@ -193,44 +207,28 @@ class SceneVariants(FileVariants[Scene]):
     """Points of a sweep over entries of a scene file, catalogue bearings with their stiffness."""
 
     def read(self, varied: Sequence[Entry], row: Sequence[float]) -> Scene:
-        return scene_of(self.put(MAIN, varied, row), self.path)
+        tables = self.put(MAIN, varied, row)
+        return self.fitting(MAIN, tables, scene_of(tables, self.path))
 
 
 def scene_variants(scene: Source, design: Design, example: str) -> SceneVariants:
     """Return the points of a sweep over a scene; `example` of an entry is for error messages."""
     document = document_of(scene)
-    files = {MAIN: document.tables}
-    points = design.points(files, lambda within: (MAIN, within), example=example)
-    return SceneVariants(
-        Path(document.path), files, points.entries, points.values, points.sums, design
+    files, path = {MAIN: document.tables}, Path(document.path)
+
+    def owner(within: str) -> tuple[str, str]:
+        return MAIN, within
+
+    points = design.points(files, owner, example=example)
+    followers = followers_of(
+        points.entries,
+        files,
+        owner,
+        lambda name: scene_of(files[name], path, alone=False),
+        lambda name: list_in(files[name], path.parent),
+        design.follow,
     )
-
-
-def data_of_other_designations(
-    varied: Sequence[Entry], files: Mapping[str, Tables]
-) -> Iterator[str]:
-    """Yield sentences on data that every designation of a sweep keeps from the file."""
-    moved = {(place.file, place.keys) for varying in varied for place in varying.places}
-    for varying in varied:
-        for file, _, keys in varying.places:
-            if keys[-1] != "designation" or {*varying.words} <= {varying.in_file}:
-                continue
-            tables = files[file]
-            data = [
-                key
-                for key in DATA_OF_DESIGNATION
-                if value_in_file((*keys[:-1], key), tables) is not None
-                and (file, (*keys[:-1], key)) not in moved
-            ]
-            if data:
-                are, them, belong = ("are", "them", "they belong")
-                if len(data) == 1:
-                    are, them, belong = ("is", "it", "it belongs")
-                yield (
-                    f"{label_of(keys, tables)} varies, and {listed(data)} {are} kept from the file, "
-                    f"where {belong} to {show(varying.in_file)}: leave {them} out of the file, or "
-                    f"vary {them} as well (`table`)"
-                )
+    return SceneVariants(path, files, points.entries, points.values, points.sums, design, followers)
 
 
 def _overlap(path: tuple, keys: tuple) -> bool:

@@ -1,13 +1,25 @@
-"""Rows of a sweep of scenes: numbers with their error bars."""
+"""Rows of a sweep of scenes: numbers with their error bars, free and under the load."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
-from solidgear.core import LADDER, QUANTITIES, Body, Scene, Settled, Source, as_supports, build
+from solidgear.core import (
+    LADDER,
+    QUANTITIES,
+    Body,
+    Scene,
+    Settled,
+    SolidgearError,
+    Source,
+    as_supports,
+    build,
+    nearest,
+    show,
+)
 from solidgear.core.judge.solving import answer_of_body
 from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of, one_shaft
@@ -19,6 +31,13 @@ from solidgear.variants.sweep.file_variants import (
     SceneVariants,
     scene_variants,
     tables_for_plan,
+)
+from solidgear.variants.sweep.shaft_numbers import (
+    ANSWER,
+    ASKED,
+    columns_of,
+    mass_alone,
+    numbers_of,
 )
 
 #: static quantities of a row
@@ -38,6 +57,7 @@ class SceneTask(FileTask):
     options: Mapping[str, Any]  #: of the builder of a model that is given
     n: int  #: natural frequencies
     first: int = 0  #: a variant that can be read
+    ask: tuple[str, ...] = (ANSWER,)  #: some of ``ASKED``
 
     @cached_property
     def _last(self) -> dict[Any, Settled]:
@@ -48,10 +68,14 @@ class SceneTask(FileTask):
     def columns(self) -> dict[str, type]:
         out: dict[str, type] = {"model": str, "unknowns": int}
         out |= {"mass": float, "mass bar": float} | ({BARS: str} if self.model else {})
-        for name in STATICS:
-            out |= self._with_bar(str(name), float)
-        for k in range(1, self.n + 1):
-            out |= self._with_bar(f"f{k}_hz", float) | {f"mode{k}": str}
+        if ANSWER in self.ask:
+            for name in STATICS:
+                out |= self._with_bar(str(name), float)
+            for k in range(1, self.n + 1):
+                out |= self._with_bar(f"f{k}_hz", float) | {f"mode{k}": str}
+        if {*self.ask} - {ANSWER}:
+            usual = self.variants.variant(self.first)
+            out |= columns_of(usual, self.ask, barred=self.model is None)
         return out
 
     def _with_bar(self, name: str, kind: type) -> dict[str, type]:
@@ -67,11 +91,19 @@ class SceneTask(FileTask):
             "set": tables_for_plan(self.options),
             "tolerance": self.tolerance,
             "n": self.n,
+            "ask": [*self.ask],
         }
 
     def numbers(self, index: int) -> dict[str, Any]:
         scene = self.variants.variant(index)
-        return self._settled(scene) if self.model is None else self._fixed(scene)
+        out: dict[str, Any]
+        if ANSWER in self.ask:
+            out = self._settled(scene) if self.model is None else self._fixed(scene)
+        else:
+            mass, bar = mass_alone(scene, self.model)
+            out = {"model": self.model, "mass": mass, "mass bar": bar}
+            out |= {} if self.model is None else {BARS: without_bars(self.model)}
+        return out | numbers_of(scene, self.ask, self.model, self.tolerance)
 
     def _settled(self, scene: Scene) -> dict[str, Any]:
         """Return numbers with error bars, by the cheapest mesh."""
@@ -128,9 +160,10 @@ def scene_task(
     tolerance: float | None = None,
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
+    ask: Iterable[str] = (),
 ) -> SceneTask:
-    """Return the task of statics and natural frequencies of variants of a scene, with error bars;
-    parameters as of :func:`solidgear.sweep`.
+    """Return the task of variants of a scene, with error bars: statics and natural frequencies by
+    default; parameters as of :func:`solidgear.sweep`.
 
     Examples
     --------
@@ -145,4 +178,15 @@ def scene_task(
     first, usual = variants.first_sound()
     n = usual.ask.modes if n is None else n
     number("sweep", "n", n, least=1, below=MOST_MODES + 1, whole=True)
-    return SceneTask(variants, model, tolerance, checked, n, first)
+    return SceneTask(variants, model, tolerance, checked, n, first, asked_of(ask))
+
+
+def asked_of(ask: Iterable[str]) -> tuple[str, ...]:
+    """Return the kinds of numbers of rows in their order; refuse words of none."""
+    asked = {*ask} or {ANSWER}
+    for word in asked.difference(ASKED):
+        raise SolidgearError(
+            f"`ask` {show(word, 40)}: of a shaft give one or more of {', '.join(ASKED)}"
+            f"{nearest(word, ASKED)}"
+        )
+    return tuple(word for word in ASKED if word in asked)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from solidgear.core import LADDER, SolidgearError, Source, document_of
@@ -15,7 +15,8 @@ from solidgear.variants.sweep.bearing_task import (
 from solidgear.variants.sweep.bearing_variants import BearingVariants, bearing_variants
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.file_task import Task
-from solidgear.variants.sweep.scene_task import scene_task
+from solidgear.variants.sweep.scene_task import asked_of, scene_task
+from solidgear.variants.sweep.shaft_numbers import ANSWER
 from solidgear.variants.sweep.train_task import train_task
 
 #: relative error that a reduction to the seats may leave in frequencies
@@ -47,10 +48,12 @@ def shaft_task(
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
     reduction_tolerance: float | None = None,
+    ask: Iterable[str] = (),
     progress: Callable[[str], None] = lambda _: None,
 ) -> Task[Any]:
     """Return the task of a sweep of a shaft: one body does for all where bearings alone vary."""
-    if not (design.one_at_a_time or design.table or design.keep_sum):
+    kinds = asked_of(ask)
+    if kinds == (ANSWER,) and not (design.one_at_a_time or design.table or design.keep_sum):
         sets = bearing_variants(source, design.vary, design.sample, design.seed)
         if sets is not None:
             reduced = REDUCED if reduction_tolerance is None else reduction_tolerance
@@ -59,7 +62,9 @@ def shaft_task(
         raise SolidgearError(
             "`reduction_tolerance` is that of one body for many bearing sets, and here more varies"
         )
-    return scene_task(source, design, model=model, tolerance=tolerance, options=options, n=n)
+    return scene_task(
+        source, design, model=model, tolerance=tolerance, options=options, n=n, ask=kinds
+    )
 
 
 def _one_body(

@@ -96,7 +96,7 @@ def _scene_sheet(result: Swept, units: Units, chart: Path | None) -> Sheet:
     """Return the sheet of variants of the file of a shaft."""
     bars = [
         bar / hz
-        for bar, hz in zip(result.columns.get("f1_hz bar", []), result.columns["f1_hz"])
+        for bar, hz in zip(result.columns.get("f1_hz bar", []), result.columns.get("f1_hz", []))
         if bar is not None and hz
     ]
     note = "A model that is given has no error bars; -f auto has."
@@ -108,7 +108,7 @@ def _scene_sheet(result: Swept, units: Units, chart: Path | None) -> Sheet:
         units,
         lead=f"Rows in {result.path.name}.",
         solved=_solved(result),
-        notes=[note],
+        notes=[note, *result.task.variants.followed],
         chart=chart,
         cautions=result.cautions,
         data=plain(result) | {"cautions": result.cautions},
@@ -123,7 +123,7 @@ def _train_sheet(result: Swept, task: TrainTask, units: Units, chart: Path | Non
     if task.ask == (CONTACT,):
         models = "teeth by plane slices, on Timoshenko shafts"
     made, cut = task.bench.made if result.alone else None, task.cut(result.columns)
-    notes = []
+    notes = [*task.variants.followed]
     if cut > 0:
         notes.append(
             f"Rows have up to {MOST_MODES + cut} natural frequencies, and columns for "

@@ -13,7 +13,7 @@ import numpy as np
 
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.study import touching
-from solidgear.teeth.supports import SHAFT, Carried, with_sections
+from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import solved_mesh
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
@@ -86,7 +86,7 @@ class TeethBench:
                 return state
         sectioned = with_sections(with_usual_meshes(train))
         if not self._states:
-            operating = Operating(Assembly(sectioned), SHAFT)
+            operating = Operating(Assembly(sectioned))
         else:
             _, first = self._states[0]
             operating = first.operating.with_points(sectioned)

@@ -6,6 +6,7 @@ from validation.campaign.cases.features import Features
 from validation.campaign.cases.fillets import Fillets
 from validation.campaign.cases.identification import Identification
 from validation.campaign.cases.modes import Modes
+from validation.campaign.cases.notches import Notches
 from validation.campaign.cases.pairing import Pairing
 from validation.campaign.cases.pairs import Pairs
 from validation.campaign.cases.points import Points
@@ -21,6 +22,7 @@ DRAWN = (
     Claims(),
     Modes(),
     Fillets(),
+    Notches(),
     Identification(),
     Pairing(),
     Solids(),

@@ -16,8 +16,9 @@ grows with n without end.  By a light mesh of order 2, from above. And by the bl
 from __future__ import annotations
 
 import logging
-from collections.abc import Callable
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Mapping
+from types import MappingProxyType
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 import scipy.sparse.linalg as spla
@@ -28,7 +29,7 @@ from solidgear.core.meshing.grading import Grading
 from solidgear.core.meshing.layout import layout
 from solidgear.core.meshing.meridian import Cut, cut_meridian, drawn_across, meridian
 from solidgear.core.models.harmonic.blocks import Work
-from solidgear.core.models.harmonic.mesh import harmonic_mesh
+from solidgear.core.models.harmonic.mesh import HarmonicMesh, harmonic_mesh
 from solidgear.core.models.limits import countable
 from solidgear.core.models.options import HARMONIC_OPTIONS, thick_enough
 from solidgear.core.models.spectrum import elastic_scale, overhangs
@@ -90,6 +91,29 @@ def harmonic(
     if cuts:
         flat, parent = cut_meridian(uncut, cuts)
     mesh = harmonic_mesh(flat, order, uncut, parent)
+    facts = {
+        "layers": layers,
+        "edge_layers": edge_layers,
+        "ratio": ratio,
+        "relative_size": relative_size,
+        "refinement": refinement,
+        "cuts": len(cuts),
+        "plain": plain,
+    }
+    return on_mesh(scene, mesh, attachments, families, ovalising, facts)
+
+
+def on_mesh(
+    scene: Any,
+    mesh: HarmonicMesh,
+    attachments: tuple[str, ...] | None = None,
+    families: tuple[str, ...] | None = None,
+    ovalising: tuple[int, ...] = (),
+    facts: Mapping[str, Any] = MappingProxyType({}),
+) -> Body:
+    """Build the harmonic solid of a shaft on a mesh of its meridian; other parameters are as of
+    :func:`harmonic`, and `facts` are those of its mesh.
+    """
     work = Work(scene, mesh)
     wanted = [*attached_stations(scene.stations, attachments)]
     ports = [Port(station.name, station.y, attachment) for station, attachment in wanted]
@@ -103,18 +127,13 @@ def harmonic(
     if "torsion" in chosen:
         blocks.append(work.block("torsion", (4,), wanted))
     blocks += [work.block(f"ovalising_{n}", (), wanted) for n in ovalising]
-    facts = {
-        "element": f"Q{order}",
-        "order": order,
-        "cells": flat.cells.shape[1],
-        "layers": layers,
-        "edge_layers": edge_layers,
-        "ratio": ratio,
-        "relative_size": relative_size,
-        "refinement": refinement,
-        "cuts": len(cuts),
-        "plain": plain,
-        "representative_size": float(np.sqrt(work.area / flat.cells.shape[1])),
+    cells = mesh.meridian.cells.shape[1]
+    all_facts = {
+        "element": f"Q{mesh.order}",
+        "order": mesh.order,
+        "cells": cells,
+        **facts,
+        "representative_size": float(np.sqrt(work.area / cells)),
         "pair_tolerance": 1e-9,
     }
     further = Families(scene, lambda n: Work(scene, mesh).block(f"ovalising_{n}", (), wanted))
@@ -124,7 +143,7 @@ def harmonic(
         tuple(ports),
         elastic_scale(scene),
         scene.length,
-        facts,
+        all_facts,
         mesh,
         further,
     )

@@ -1,0 +1,1 @@
+"""Solids of a piece of a shaft around one cut, for the stress there."""
