@@ -7,8 +7,8 @@ from command import command
 from filleted import STRONG, shoulder
 
 import solidgear as sg
-from solidgear.core.loading import as_written, under_case
-from solidgear.show.remarks import case_sentence, document_under, load
+from solidgear.core.loading import as_written, case_sentence, under_case
+from solidgear.show.remarks import document_under, load
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 CATALOGUE = GEOMETRY / "gearbox_catalogue.toml"

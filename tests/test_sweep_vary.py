@@ -229,7 +229,7 @@ def test_a_sweep_says_at_which_load_catalogue_bearings_are_taken(tmp_path):
         return run(task, tmp_path / "r.csv", overwrite=True).settling
 
     assert settling(GEARBOX, "bearing.A.position=15 mm,20 mm") == (
-        "Catalogue bearings A, B: stiffness under [load], found anew for every variant."
+        "Catalogue bearings A, B: stiffness under the loads, found anew for every variant."
     )
     assert "bearing.A.scale multiplies it and leaves the loads as they are" in settling(
         GEARBOX, "bearing.A.scale=1,2"

@@ -95,6 +95,19 @@ def under_case(source: Source, case: str | None) -> Document:
     return Document(dict(document.tables) | {"case": tables}, document.path)
 
 
+def case_sentence(source: Source) -> str:
+    """Return the sentence on which case of several catalogue bearings settle under; empty where there
+    is no choice.
+    """
+    scene = as_written(source)
+    if len(scene.cases) < 2 or not any(b.catalogue is not None for b in scene.bearings):
+        return ""
+    return (
+        f'catalogue bearings settle under the load case "{scene.cases[0].name}", one of '
+        f"{len(scene.cases)}"
+    )
+
+
 def scene_of(tables: Mapping[str, Any], path: str | os.PathLike, alone: bool = True) -> Scene:
     """Return the scene that tables of a file describe, with names of files relative to its path;
     errors as of :func:`load`. Catalogue bearings settle at the load of the scene where it is

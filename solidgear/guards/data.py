@@ -8,9 +8,9 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.core import DOF_NAMES, Scene, listed
+from solidgear.core.loading import case_sentence
 from solidgear.core.scene.support import RIGID
 from solidgear.guards.notice import Notice, Notices, slip_in_units
-from solidgear.show.remarks import case_sentence
 
 if TYPE_CHECKING:
     from solidgear.guards.probe import Probe

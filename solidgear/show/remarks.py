@@ -13,11 +13,10 @@ from solidgear.core import (
     Scene,
     Source,
     addition,
-    as_written,
     explained,
 )
 from solidgear.core import load as read
-from solidgear.core.loading import under_case
+from solidgear.core.loading import case_sentence, under_case
 
 
 def load(source: Source, case: str | None = None) -> Scene:
@@ -41,25 +40,13 @@ def document_under(source: Source, case: str | None) -> Document:
     """
     document = under_case(source, case)
     if case is None and not document.describes_train and len(document.tables.get("case", ())) > 1:
-        _print_case(as_written(document))
+        _print_case(document)
     return document
 
 
-def _print_case(scene: Scene) -> None:
-    if sentence := case_sentence(scene):
+def _print_case(source: Source) -> None:
+    if sentence := case_sentence(source):
         print(f"{sentence}; --case NAME takes another", file=sys.stderr)
-
-
-def case_sentence(scene: Scene) -> str:
-    """Return the sentence on which case of several catalogue bearings settle under; empty where there
-    is no choice.
-    """
-    if len(scene.cases) < 2 or not any(b.catalogue is not None for b in scene.bearings):
-        return ""
-    return (
-        f'catalogue bearings settle under the load case "{scene.cases[0].name}", one of '
-        f"{len(scene.cases)}"
-    )
 
 
 def cautions(scene: Scene, body: Body) -> list[str]:

@@ -474,8 +474,8 @@ def loaded_tables(pair: TwoShafts, units: Units = ENGINEERING) -> list[Table]:
         return []
     verdict = Column("", lambda n: n.verdict if n.change.band else None, kind=WORD, name="verdict")
     note = (
-        f"Sizes across the shaft at lumped points, and of bearing loads, {BY}, in the first case of "
-        "each. Error bars are for the mesh; loads of bearings have none."
+        f"Sizes across the shaft at lumped points, and of bearing loads, {BY}, each "
+        "in the case of its loads that was chosen, by default its first. Error bars are for the mesh; loads of bearings have none."
     )
     return [Table("Under the loads", [*_columns(units), verdict], pair.loaded, note, style="ruled")]
 

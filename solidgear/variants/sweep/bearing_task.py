@@ -310,7 +310,10 @@ def _settling(variants: BearingVariants) -> str:
         return ""
     which = f"Catalogue {'bearing' if len(names) == 1 else 'bearings'} {', '.join(names)}"
     factors = [entry.label for entry in variants.entries if variants.multiplies(entry)]
-    text = "stiffness under [load]"
+    cases = variants.scene.cases
+    text = (
+        f'stiffness under the load case "{cases[0].name}"' if cases else "stiffness under the loads"
+    )
     if len(factors) < len(variants.entries):
         text += ", found anew for every variant"
     if not factors:
