@@ -19,7 +19,8 @@ from solidgear.exchange.matrices.source import CRAIG_BAMPTON, MODEL, Wanted, por
 from solidgear.exchange.rexs.export.exporting import Exported, write_rexs
 from solidgear.exchange.rexs.units import REST
 from solidgear.show.command import Progress, command
-from solidgear.show.options import BY_MODEL, Run, Settings, options, speed_of
+from solidgear.show.options import BY_MODEL, CaseName, Run, Settings, options, refuse, speed_of
+from solidgear.show.remarks import document_under
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.table import Column, Table, text
 
@@ -80,6 +81,7 @@ def export(
         str, typer.Option("--units", help=f"Units of the file: {', '.join(MATRIX_UNITS)}.")
     ] = SI.name,
     settings: Settings = None,
+    case: CaseName = None,
     run: Run,
 ) -> None:
     matrix_units(system)
@@ -99,12 +101,14 @@ def export(
         if is_rexs(out, to or ""):
             usual = Wanted()
             asked = {k: v for k, v in wanted.items() if v != getattr(usual, k, None)}
+            refuse({"--case": case is not None}, f"matrices, and {out} is REXS")
             refuse_options(out, asked, system)
             return _rexs_sheet(write_rexs(file, out), file, out)
+        source = document_under(file, case)
         if to == "ross":
-            return _written(write_ross(file, out, system, **wanted))
+            return _written(write_ross(source, out, system, **wanted))
         format_of(out, to or "", OTHERS)
-        matrices = port_matrices(file, **wanted)
+        matrices = port_matrices(source, **wanted)
         return _sheet(matrices, write_matrices(matrices, out, to or "", system), system)
 
     present(study, run)
