@@ -101,7 +101,7 @@ def fenced(text: str) -> str:
 def with_contents(text: str) -> str:
     """The list of cases, its links also in the side bar."""
     cases = [link.removesuffix(".md") for link in re.findall(r"\]\((\w+\.md)\)", text)]
-    contents = "\n".join(["```{toctree}", ":hidden:", "", *cases, "```"])
+    contents = "\n".join(["```{toctree}", ":hidden:", "", *dict.fromkeys(cases), "```"])
     return text.replace("# Validation manual", "# Cases with a known answer", 1) + f"\n{contents}\n"
 
 
