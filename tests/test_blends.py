@@ -179,6 +179,27 @@ def test_harmonic_solid_has_the_mass_of_the_closed_form(order, tolerance):
     assert body.rigid_residual() < 1e-14  # it moves freely whatever the order
 
 
+@pytest.mark.parametrize("turned", [False, True])
+@pytest.mark.parametrize(
+    ("diameters", "bores", "surface"),
+    [
+        ((0.055, 0.045), (0.02, 0.0), "outer"),
+        ((0.055, 0.045), (0.012, 0.02), "outer"),
+        ((0.055, 0.045), (0.02, 0.012), "bore"),
+    ],
+)
+def test_a_step_without_a_fillet_stays_in_its_plane_beside_one_with(
+    diameters, bores, surface, turned
+):
+    """The line of a joint moves to the end of a fillet, but not where it is a face."""
+    ends = [*zip(("a", "b"), diameters, bores)][:: -1 if turned else 1]
+    parts = [Segment.cylinder(n, length=0.08, diameter=d, bore=b) for n, d, b in ends]
+    fillet = Fillet(name="f", y=0.08, radius=0.002, surface=surface)
+    scene = Scene.from_parts(parts, port=Port(y=0.03, lo=0.02, hi=0.04), blends=[fillet])
+    body = sg.build(scene, "harmonic", order=3, layers=1)
+    assert inertias(body) == pytest.approx(exact(scene), rel=1e-7)
+
+
 def test_hexahedra_have_it_within_the_gate_and_are_counted():
     scene = everywhere()
     options = {"element": "hex20", "layers": 1, "radial_layers": 1}

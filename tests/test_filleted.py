@@ -11,7 +11,8 @@ from solidgear.core.scene import Fillet, Port
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.filleted import filleted
 from solidgear.cuts.features import CrossHole, Keyway
-from solidgear.strength.stress.at_rest import _file_cautions, _settling
+from solidgear.strength.stress.at_rest import _file_cautions
+from solidgear.trains.assembly.assembly import Assembly
 from validation.step_parts import write_step
 
 GEOMETRY = Path(__file__).parents[1] / "geometry"
@@ -88,5 +89,6 @@ HOLE = CrossHole(name="h", segment="rod", y=0.05, diameter=0.005)
 def test_every_model_that_is_offered_settles_what_the_scene_has(model, features):
     """The plain part, or all of it by models that are made for what it has; else what is said is true."""
     scene = keyed(*features)
-    why = LADDER[model].unfit(_settling(scene, model))
+    (shaft,) = Assembly.of(scene).settling(model).train.shafts.values()
+    why = LADDER[model].unfit(shaft.scene)
     assert bool(why) == (not LADDER[model].concerns(scene)), why

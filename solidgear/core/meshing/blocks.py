@@ -20,7 +20,7 @@ from solidgear.core.meshing.grading import Grading, joint_length
 from solidgear.core.meshing.marks import Mark, lines_between
 from solidgear.core.scene.corner import SURFACES, Corner, Surface
 from solidgear.core.scene.limits import TOUCH
-from solidgear.core.scene.outline import Outline
+from solidgear.core.scene.outline import Outline, radii_of
 
 if TYPE_CHECKING:
     from solidgear.core.scene.shaft import Shaft
@@ -69,6 +69,8 @@ class Joint:
     low: Zone = field(default_factory=lambda: Zone(-1))
     high: Zone = field(default_factory=lambda: Zone(1))
     line: int = -1  #: mesh line of the joint, once there is one
+    #: radii of steps without a root, whose plane faces lie at the joint, m
+    bare: tuple[float, ...] = ()
 
     def zone(self, side: int) -> Zone:
         """Return the zone of one side."""
@@ -82,8 +84,11 @@ class Joint:
         """Return the distance of the line of the joint from it where both sides have material,
         m.
         """
-        roots = sorted((c.r, c.side * c.axial) for c in self.corners if c.root)
-        return np.interp(r, *np.array(roots).T) if roots else np.zeros(np.shape(r))
+        roots = [(c.r, c.side * c.axial) for c in self.corners if c.root]
+        if not roots:
+            return np.zeros(np.shape(r))
+        knots = sorted([*roots, *((radius, 0.0) for radius in self.bare)])
+        return np.interp(r, *np.array(knots).T)
 
 
 def joints_of(scene: Shaft, grading: Grading, marks: Sequence[Mark]) -> list[Joint]:
@@ -92,11 +97,28 @@ def joints_of(scene: Shaft, grading: Grading, marks: Sequence[Mark]) -> list[Joi
     for corner in scene.outline.corners:
         by_place[corner.joint].append(corner)
     ends = [0.0, *(s.y1 for s in scene.segments)]
-    joints = [Joint(ends[k], k, by_place[k]) for k in sorted(by_place)]
+    joints = [
+        Joint(ends[k], k, by_place[k], bare=_bare_steps(scene, k, by_place[k]))
+        for k in sorted(by_place)
+    ]
     for joint in joints:
         for zone in (joint.low, joint.high):
             _set_size(joint, zone, grading, ends, marks)
     return joints
+
+
+def _bare_steps(scene: Shaft, index: int, corners: Sequence[Corner]) -> tuple[float, ...]:
+    """Return the radii of steps between two segments that have no root, m."""
+    if not 0 < index < len(scene.segments):
+        return ()
+    low, high = scene.segments[index - 1 : index + 1]
+    rooted = {corner.surface for corner in corners if corner.root}
+    out = []
+    for surface, deepest in (("outer", min), ("bore", max)):
+        radii = radii_of(low, surface)[1], radii_of(high, surface)[0]
+        if surface not in rooted and abs(radii[0] - radii[1]) > TOUCH:
+            out.append(deepest(radii))
+    return tuple(out)
 
 
 def _set_size(joint: Joint, zone: Zone, grading: Grading, ends, marks) -> None:

@@ -9,7 +9,7 @@ from pydantic import Field, model_validator
 from solidgear.core.errors import SceneError
 from solidgear.core.scene.places import Name
 from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import Ratio, Speed
+from solidgear.core.scene.units import Ratio, Speed, TimeShare
 
 
 class LoadCase(Model):
@@ -51,7 +51,7 @@ class LoadCase(Model):
     #: speed of the shaft, rad/s
     speed: Speed | None = None
     #: share of the time of a duty table; of every case or of none
-    share: Annotated[float, Field(gt=0, le=1)] | None = None
+    share: TimeShare | None = None
     #: hours of a duty table; of every case or of none
     hours: Annotated[float, Field(gt=0)] | None = None
 

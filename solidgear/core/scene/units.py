@@ -377,6 +377,10 @@ RatingFactor = Annotated[
 ]
 Ratio = Annotated[float, _in("dimensionless")]
 Share = Annotated[float, _in("dimensionless"), _between(0, 1, "0 and 1")]
+#: of the time of a duty table
+TimeShare = Annotated[
+    float, _in("dimensionless"), _POSITIVE, Range("a share is 1, or 100 %, at most", most=1)
+]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
 Mass = Annotated[float, _in("mass"), _POSITIVE]
 Factor = Annotated[float, _in("dimensionless"), _POSITIVE]

@@ -13,7 +13,7 @@ from solidgear.core.scene.gravity import Direction, acceleration
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.load_case import LoadCase
 from solidgear.core.scene.model_table import table_of
-from solidgear.core.scene.units import Speed, Torque
+from solidgear.core.scene.units import Speed, TimeShare, Torque
 
 #: operating points of one train
 MOST_POINTS = 1000
@@ -57,7 +57,7 @@ class OperatingPoint(Model):
     #: further forces on shafts, such as of a belt
     force: tuple[OutsideForce, ...] = ()
     #: share of the time of a duty table; of every point or of none
-    share: Annotated[float, Field(gt=0, le=1)] | None = None
+    share: TimeShare | None = None
     #: hours of a duty table; of every point or of none
     hours: Annotated[float, Field(gt=0)] | None = None
 
