@@ -114,10 +114,10 @@ def _bare_steps(scene: Shaft, index: int, corners: Sequence[Corner]) -> tuple[fl
     low, high = scene.segments[index - 1 : index + 1]
     rooted = {corner.surface for corner in corners if corner.root}
     out = []
-    for surface, deepest in (("outer", min), ("bore", max)):
+    for surface in SURFACES:
         radii = radii_of(low, surface)[1], radii_of(high, surface)[0]
         if surface not in rooted and abs(radii[0] - radii[1]) > TOUCH:
-            out.append(deepest(radii))
+            out.append(min(radii) if surface == "outer" else max(radii))
     return tuple(out)
 
 
