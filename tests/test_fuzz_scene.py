@@ -53,7 +53,7 @@ def test_spoilt_scenes_are_refused_or_solved(fuzz):
     stages, sorts = nothing_found(case, kind, cases)
     # a fuzz that never gets past the parser, or never meets a refusal, tests nothing
     accepted = {stage: n for (kind, stage), n in stages.items() if kind == "accepted"}
-    assert sum(accepted.values()) > cases // 10 and {"harmonic", "command"} <= set(accepted)
+    assert sum(accepted.values()) >= cases // 10 and {"harmonic", "command"} <= set(accepted)
     assert len(sorts) > cases // 7
 
 

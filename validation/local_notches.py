@@ -224,7 +224,7 @@ def keyed_section(diameter: float, width: float, depth: float, radius: float):
     from skfem import MeshTri
 
     floor, half = diameter / 2 - depth, width / 2
-    gmsh.initialize(["gmsh", "-v", "0"])
+    gmsh.initialize(["gmsh", "-v", "0"], interruptible=False)
     occ = gmsh.model.occ
     disc = occ.addDisk(0, 0, 0, diameter / 2, diameter / 2)
     top = diameter

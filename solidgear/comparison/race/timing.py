@@ -104,7 +104,7 @@ import solidgear.core.solve.modes, solidgear.core.scene.file
 lap("solidgear and scikit-fem")
 try:
     import gmsh
-    gmsh.initialize(["gmsh", "-noenv"], readConfigFiles=False)
+    gmsh.initialize(["gmsh", "-noenv"], readConfigFiles=False, interruptible=False)
     lap("gmsh, first use")
     import pypardiso
     pypardiso.PyPardisoSolver(mtype=2)
