@@ -36,6 +36,7 @@ def _rated(
     feature: dict[str, Any],
     strength: Mapping[str, str],
     load: Mapping[str, float],
+    tol: float = 0.01,
     **conditions: Any,
 ) -> dict[str, float]:
     """Safeties of the one notch of a shaft between moments, torques and forces at its ends."""
@@ -63,7 +64,7 @@ def _rated(
         "port": {"name": "middle", "position": "300 mm", "span": ["295 mm", "305 mm"]},
         "load": ends,
     }
-    shaft = sg.stress(scene, "euler", conditions=conditions).shafts[0].found
+    shaft = sg.stress(scene, "euler", tol=tol, conditions=conditions).shafts[0].found
     (notch,) = shaft.worst
     assert notch.rating is not None
     return {"fatigue": notch.rating.fatigue, "yielding": notch.rating.yielding}
@@ -213,6 +214,7 @@ V_GROOVE = _exam(
         | {"depth": "10 mm"},
         {"yield_point": "235 MPa", "ultimate": "360 MPa", "group": "construction"},
         {"moment": 12666.667, "force": 40e3},
+        tol=0.2,  # the rating takes the norm's factor
         bending_share=0.0,
         overload=1.5,
     ),
