@@ -170,7 +170,7 @@ def test_the_command_draws_a_front(tmp_path):
     [
         "lists alone, two goals",
         pytest.param("span", marks=pytest.mark.long),
-        pytest.param("two limits", marks=pytest.mark.long),
+        pytest.param("two limits", marks=pytest.mark.slow),
     ],
 )
 def test_a_search_is_no_worse_than_a_fine_grid(name):
