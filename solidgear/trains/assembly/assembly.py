@@ -151,6 +151,8 @@ class Assembly:
         )
         point = train.point
         self._flanks: dict[bool, Assembly] = {point is not None and point.coast: self}
+        #: trains without cuts, by the model that settles them: built once for all ends of open data
+        self._plain: dict[str, Assembly] = {}
 
     @property
     def tolerance(self) -> float:
@@ -480,6 +482,8 @@ class Assembly:
         train = self.asked_train
         if not self.left_out(model) and not any(mesh.local_harmonics for mesh in train.meshes):
             return self
+        if model in self._plain:
+            return self._plain[model]
         shafts = {
             side: shaft.with_changes(scene=shaft.scene.plain)
             if LADDER[model].left_out(shaft.scene)
@@ -487,7 +491,8 @@ class Assembly:
             for side, shaft in train.shafts.items()
         }
         meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
-        return replace(self, train=train.with_changes(shafts=shafts, meshes=meshes))
+        self._plain[model] = replace(self, train=train.with_changes(shafts=shafts, meshes=meshes))
+        return self._plain[model]
 
     def on_flank(self, coast: bool) -> Assembly:
         """Return the same train with the teeth in contact on one flank: `coast` is True for that
