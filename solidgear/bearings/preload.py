@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -13,6 +14,8 @@ from solidgear.bearings.sliding import FURTHEST, condense_y, slide_to_balance
 from solidgear.core import SolidgearError
 
 
+# equal bearings of a scene, and variants of it, push equal rows
+@lru_cache(maxsize=256)
 def pushed(row: BallRow | RollerRow, force: float) -> BallRow | RollerRow:
     """Return a row with a contact angle whose rings are pushed together until it presses with a
     force along y, N; refuse a force that no push brings.

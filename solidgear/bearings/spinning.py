@@ -23,7 +23,7 @@ the turning of a in F_c and M_g. Inertia is no spring: the tangent is not quite 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -45,6 +45,10 @@ class SpinningBalls:
     row: BallRow
     speed: float  #: rad/s
     density: float = DENSITY  #: of the balls, kg/m^3
+    #: the last motion and where its balls settled: load and tangent of one motion are asked in turn
+    _last: dict[tuple, tuple[np.ndarray, np.ndarray]] = field(
+        default_factory=dict, init=False, repr=False, compare=False
+    )
 
     @property
     def pitch(self) -> float:
@@ -99,8 +103,17 @@ class SpinningBalls:
 
     def _settled(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return vectors s and o (..., n, 2) at which the balls are in equilibrium."""
+        felt_motion = np.ascontiguousarray(np.asarray(motion, float)[..., FELT])
+        key = felt_motion.shape, felt_motion.tobytes()
+        if key not in self._last:
+            settled = self._settle(felt_motion)
+            self._last.clear()
+            self._last[key] = settled
+        return self._last[key]
+
+    def _settle(self, felt_motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the equilibrium of the balls, from a static approach on."""
         row = self.row
-        felt_motion = np.asarray(motion, float)[..., FELT]
         s = np.stack([row.start[k] + felt_motion @ row._felt[k].T for k in (0, 1)], axis=-1)
         inertia = self._inertia(s)[0]
         (_, free_i), (outer, free_o) = self._grooves()
@@ -131,8 +144,11 @@ class SpinningBalls:
         """
         first = (miss * step).sum(axis=-1)
         way = np.ones_like(first)
+        (inner, free_i), (outer, free_o) = self._grooves()
         for _ in range(30):
-            q_i, q_o, _, _ = self._contacts(s, _moved(o, way[..., None] * step))
+            moved = _moved(o, way[..., None] * step)
+            q_i = _force(s - moved, inner.constant, free_i)
+            q_o = _force(moved, outer.constant, free_o)
             too_far = ((q_i - q_o + inertia) * step).sum(axis=-1) < -0.5 * first
             if not too_far.any():
                 break
@@ -192,6 +208,13 @@ def _moved(o: np.ndarray, step: np.ndarray) -> np.ndarray:
     angle = (step * across).sum(axis=-1, keepdims=True) / length
     direction = np.cos(angle) * normal + np.sin(angle) * across
     return (length + (step * normal).sum(axis=-1, keepdims=True)) * direction
+
+
+def _force(between: np.ndarray, constant: float, free: float) -> np.ndarray:
+    """Return the force (..., 2) along the vector between two centres."""
+    length = np.sqrt((between**2).sum(axis=-1))
+    press = constant * np.maximum(length - free, 0.0) ** POINT_POWER
+    return (press / length)[..., None] * between
 
 
 def _contact(between: np.ndarray, constant: float, free: float, nearly: float):

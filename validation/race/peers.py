@@ -53,7 +53,7 @@ NAMED = ("bending 1", "axial 1")
 ENOUGH = 60.0
 
 #: tolerances of the automatic choice, over the target, whose last meshes are tried, coarse to fine
-LOOSER = (10.0, 5.0, 2.0, 1.0)
+LOOSER = (10.0, 7.0, 5.0, 4.0, 3.0, 2.5, 2.0, 1.5, 1.0)
 #: elements of our 3D solid, on the meshes that the program itself lists, coarse to fine
 ELEMENTS = ("hex20", "hex27", "tet10")
 

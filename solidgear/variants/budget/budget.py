@@ -30,6 +30,7 @@ import numpy as np
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.clearance import clearance_range, is_axial
+from solidgear.bearings.equilibrium import Equilibrium
 from solidgear.bearings.solved import Choice, solved, wants_equilibrium
 from solidgear.core import (
     LADDER,
@@ -439,6 +440,7 @@ class Points:
         self.lost: dict[str, None] = {}  #: names of bearings that carried nothing at a point
         self._beams: dict[tuple, Body] = {}
         self._first: NamedShapes | None = None
+        self._settled: Equilibrium | None = None  #: at the first point, where others begin
 
     def with_data(self, bearing: str, **known: Any) -> Points:
         """Return the same points of a scene in which more catalogue data of a bearing are known."""
@@ -472,7 +474,11 @@ class Points:
             if key not in self._beams:
                 self._beams = {key: build(scene.plain, SHAFT)}
             beam = self._beams[key]
-        rest = solved(scene, beam if wants_equilibrium(scene) else None, _choice(values))
+        rest = solved(
+            scene, beam if wants_equilibrium(scene) else None, _choice(values), self._settled
+        )
+        # places in the ranges are near one another
+        self._settled = self._settled or rest.equilibrium
         for name, made in rest.made.items():
             if not made.bearing.load(rest.motion[name]).any():
                 self.lost[name] = None
