@@ -39,6 +39,7 @@ from solidgear.core.ladder.meshes import FREE
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.meter import Meter
+from solidgear.core.machine.processes import give_back
 from solidgear.guards.check import notices
 from solidgear.guards.models import cells_around
 from solidgear.show.remarks import may_be_open
@@ -324,6 +325,7 @@ def _run(
             findings.add_places(scene, solution)
         # Factors are the largest thing a body holds, and no further solution is needed.
         solution.body.cache.clear()
+        give_back()
     if findings.solutions:
         progress("guards")
         findings.guards = notices(scene, findings.solutions)

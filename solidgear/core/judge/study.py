@@ -38,6 +38,7 @@ from solidgear.core.ladder.model import SOLID
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.machine.meter import Meter
+from solidgear.core.machine.processes import give_back
 from solidgear.core.models.options import ATTACHMENTS
 from solidgear.core.quantity import C_ZZ, FIRST_BENDING, Quantity
 
@@ -174,6 +175,7 @@ class TiedSolver:
         before = dict(self.meter.seconds)
         if self.solution is not None:
             self.solution.body.cache.clear()  # its factor need not be held beside the next one
+            give_back()
         scene, name = refinement.scene, refinement.model.name
         tied = tied_statics(scene, name, options, self.meter)
         if distances := self._beyond_check(tied):
@@ -185,6 +187,7 @@ class TiedSolver:
         answer = ties[SCENE]
         solution = Solution(refinement.model.name, ties, self.meter, failed=self.failed)
         solution.levels, solution.options = self.meshes, dict(options)
+        give_back()
         with self.meter.stage("band"):
             score = self._judge_mesh(solution)
         self.meshes.append(_level_of(answer))
