@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core.body import Body, Supports, as_supports
-from solidgear.core.bounds.harmonic import is_bounded
+from solidgear.core.bounds.harmonic import is_bounded, of_one_problem
 from solidgear.core.judge.quantities import measure
 from solidgear.core.ladder import build
 from solidgear.core.quantity import ACROSS, QUANTITIES, STIFFNESS, Quantity
@@ -155,7 +155,7 @@ def search_modes(
     **options: Any,
 ) -> ModeSet:
     """Find modes of a body on supports, wider and wider until the modes named in `wanted` are among
-    them, and with `spare` one more of the same motion above each and beyond those near it; options of
+    them, and with `spare` one more of the same eigenproblem above each and beyond those near it; options of
     :func:`solidgear.core.solve.modes.modes`.
 
     The list has `n` elastic shapes, modes found above stand beyond the end of it, and those that
@@ -190,15 +190,15 @@ def with_all_solved(listed: ModeSet) -> ModeSet:
 
 
 def _contains(listed: ModeSet, name: str, spare: bool) -> bool:
-    """Return whether a mode was found, and with `spare` one above it of the same motion, and one
-    beyond those near it.
+    """Return whether a mode was found, and with `spare` one above it of the same eigenproblem, and
+    one beyond those near it.
     """
     solved = with_all_solved(listed)
     mode = solved.named(name)
     if mode is None or not spare:
         return mode is not None
     above = (m for m in (*solved.modes, *solved.beyond) if m.frequency_hz > mode.frequency_hz)
-    return any(m.family == mode.family for m in above) and is_bounded(solved, mode)
+    return any(of_one_problem(m, mode) for m in above) and is_bounded(solved, mode)
 
 
 def solve(
