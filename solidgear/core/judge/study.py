@@ -335,5 +335,6 @@ def _add_variants(scene: Scene, solution: Solution, progress: Progress) -> None:
                     body = build(variant, solution.model, **solution.options)
                     tied = tied_by(variant, body, as_supports(variant), None, unbooked)
                     solution.variants[attachment] = solved_modes(variant, tied, unbooked)
+                    body.cache.clear()  # its numbers are all that is asked of it
             except SolidgearError as error:
                 log.info("%s: attachment %s skipped: %s", solution.model, attachment, error)
