@@ -316,10 +316,11 @@ def enrichment(
             continue
         gram, _ = weighed(seat.pieces(m), seat.place, n)
         rows.append(rigid_part(gram, more.loads(seat), components).toarray())
+    matrices = more.stiffness, more.coupling, more.inertia
+    for matrix in matrices:
+        matrix.data *= copies  # in place: they are the largest arrays of an error bar
     return Enrichment(
-        copies * more.stiffness,
-        copies * more.coupling,
-        copies * more.inertia,
+        *matrices,
         (3 * more.summed[:, None] + np.arange(3)).ravel(),
         np.vstack([np.zeros((0, 3 * count)), *rows]),
         moves.ravel(),
