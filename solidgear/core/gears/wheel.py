@@ -42,6 +42,21 @@ def involute(angle):
     return np.tan(angle) - angle
 
 
+def angle_of_involute(value: float, most: float) -> float:
+    """Return the angle of an involute function, rad, from one above it down: the function is convex,
+    so that Newton's steps never go too far.
+
+    Examples
+    --------
+    >>> round(angle_of_involute(float(involute(0.35)), 1.2), 12)
+    0.35
+    """
+    angle = most
+    while (following := angle - (involute(angle) - value) / tan(angle) ** 2) < angle:
+        angle = following
+    return float(angle)
+
+
 @dataclass(frozen=True)
 class Rack:
     """The basic rack normal to the teeth, by default that of ISO 53, profile A.

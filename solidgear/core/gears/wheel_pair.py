@@ -23,7 +23,7 @@ from math import acos, cos, pi, sin, sqrt, tan
 import numpy as np
 
 from solidgear.core.errors import SceneError
-from solidgear.core.gears.wheel import Wheel, involute
+from solidgear.core.gears.wheel import Wheel, angle_of_involute, involute
 
 #: transverse pressure angle that no pair of wheels exceeds, rad
 STEEPEST = 0.4 * pi
@@ -61,8 +61,6 @@ class WheelPair:
     @cached_property
     def tight(self) -> float:
         """Centre distance without backlash, m."""
-        from scipy.optimize import brentq  # slow to import
-
         first, second = self.first, self.second
         total = first.teeth + second.teeth
         shifts = first.shift + second.shift
@@ -73,8 +71,7 @@ class WheelPair:
                 "leaves no pressure angle, with that of the other wheel",
                 path=("pinion", "profile_shift"),
             )
-        at_work = brentq(lambda a: involute(a) - wanted, 0.0, STEEPEST, xtol=1e-15)
-        return self._base_sum / cos(at_work)
+        return self._base_sum / cos(angle_of_involute(wanted, STEEPEST))
 
     @property
     def _base_sum(self) -> float:
