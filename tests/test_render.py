@@ -23,10 +23,11 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.core.solve.modes import Mode
-from solidgear.show import render
+from solidgear.show import canvas, render
 from solidgear.show.folder import OWN, clear
 from solidgear.show.outputs import OUTPUTS, Output, node_order, write_vtu
 from solidgear.show.render import PACKAGES, Drawing, RenderJob, render_modes
+from solidgear.show.scales import MOTION, YLORRD
 
 ROOT = Path(__file__).parents[1]
 SOLID = {"refinement": 0.5}
@@ -130,7 +131,7 @@ def test_what_does_not_fit_is_refused(drawable):
         body.surface({0: np.zeros(3)})
 
 
-def drawing(drawable, folder):
+def bending_jobs(drawable, folder):
     jobs = []
     for fidelity in ("timoshenko", "harmonic"):
         body, modes = drawable(fidelity)
@@ -145,7 +146,7 @@ def test_pictures(drawable, tmp_path):
     from matplotlib.image import imread
     from PIL import Image
 
-    jobs = drawing(drawable, tmp_path)
+    jobs = bending_jobs(drawable, tmp_path)
     still = jobs[0].surface
     dead = RenderJob(
         type(still)(still.points, 0 * still.points, still.faces, still.triangles, still.lines),
@@ -175,7 +176,7 @@ def test_pictures(drawable, tmp_path):
 
 def test_without_a_renderer_there_is_a_sentence_and_no_file(drawable, tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
-    results = render_modes(drawing(drawable, tmp_path))
+    results = render_modes(bending_jobs(drawable, tmp_path))
     assert len(results) == 2
     for r in results:
         assert not r.ok
@@ -196,7 +197,7 @@ def test_a_child_that_dies_or_hangs_is_survived(drawable, tmp_path, monkeypatch,
     fake.chmod(0o755)
     monkeypatch.setattr(render.sys, "executable", str(fake))
     out = tmp_path / "out"
-    results = render_modes(drawing(drawable, out), timeout=timeout)
+    results = render_modes(bending_jobs(drawable, out), timeout=timeout)
     assert [r.ok for r in results] == [False, False]
     assert all(PACKAGES in r.reason for r in results)
     assert ("signal 11" in results[0].reason) == ("SIGSEGV" in death)
@@ -212,7 +213,7 @@ def test_a_child_is_gone_when_its_caller_has_left(drawable, tmp_path, monkeypatc
     )
     fake.chmod(0o755)
     monkeypatch.setattr(render.sys, "executable", str(fake))
-    with pytest.raises(KeyboardInterrupt), Drawing(drawing(drawable, tmp_path)):
+    with pytest.raises(KeyboardInterrupt), Drawing(bending_jobs(drawable, tmp_path)):
         while not (told.exists() and told.read_text()):
             time.sleep(0.01)
         os.kill(int(told.read_text()), 0)  # it is there
@@ -240,8 +241,58 @@ def test_the_child_starts_without_the_rest_of_the_package():
         "solidgear.core.registry",
         "solidgear.rooms",
         "solidgear.show",
+        "solidgear.show.canvas",
         "solidgear.show.drawing",
+        "solidgear.show.scales",
     }
+
+
+def test_a_picture_is_drawn_without_the_plotter_of_pyvista_and_matplotlib():
+    code = """
+import sys
+import numpy as np
+from solidgear.show.canvas import Canvas, Shading, edges_of, scale_of, surface_of
+corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+body = surface_of(corners, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
+canvas, scale = Canvas(60, 60), scale_of(("#ff0000", "#00ff00"), (0.0, 1.0))
+canvas.smooth(body, np.arange(4) / 3, scale, Shading(1.0, 0.0))
+canvas.lines(edges_of(body), "#0000ff", 2.0, nearer=np.zeros(3))
+canvas.silhouette(body, "#000000", 2.0)
+canvas.words("a", 0.9, 12)
+canvas.bar(scale, 0.5, 8, 3, "%.1f")
+canvas.aim(np.full(3, 0.3), np.ones(3), np.array([0.0, 0, 1]), 3.0)
+canvas.axes()
+print(len(np.unique(canvas.pixels())), sorted({"matplotlib", "pyvista.plotting"} & set(sys.modules)))
+"""
+    out = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        env={
+            "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow",
+            **os.environ,
+            "PYTHONPATH": str(ROOT),
+        },
+    )
+    if out.returncode < 0:
+        pytest.skip("there is no OpenGL")
+    levels, _, imported = out.stdout.strip().partition(" ")
+    assert imported == "[]" and int(levels) > 20, out.stderr
+
+
+def test_colours_are_those_of_their_names():
+    from matplotlib import colormaps
+
+    share = np.linspace(0, 1, canvas.STEPS)
+    for ramp, named, at, most in (
+        # samples of viridis, between which it bends by 4 of 255
+        (MOTION, "viridis", 0.14 + 0.86 * share, 5),
+        # the colours that it is made of: no more than rounding to bytes
+        (YLORRD, "YlOrRd", share, 1),
+    ):
+        scale = canvas.scale_of(ramp, (0.0, 1.0))
+        table = [scale.GetTableValue(k)[:3] for k in range(canvas.STEPS)]
+        np.testing.assert_allclose(table, colormaps[named](at)[:, :3], rtol=0, atol=most / 255)
 
 
 def volumes(points, cells, vtk_name):
