@@ -20,10 +20,11 @@ import solidgear as sg
 from solidgear.comparison.page import write
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
+from solidgear.core.machine.processes import Other
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.core.solve.modes import Mode
-from solidgear.show import canvas, render
+from solidgear.show import canvas, drawing, render
 from solidgear.show.folder import OWN, clear
 from solidgear.show.outputs import OUTPUTS, Output, node_order, write_vtu
 from solidgear.show.render import PACKAGES, Drawing, RenderJob, render_modes
@@ -293,6 +294,63 @@ def test_colours_are_those_of_their_names():
         scale = canvas.scale_of(ramp, (0.0, 1.0))
         table = [scale.GetTableValue(k)[:3] for k in range(canvas.STEPS)]
         np.testing.assert_allclose(table, colormaps[named](at)[:, :3], rtol=0, atol=most / 255)
+
+
+def asked_for(folder, count):
+    """Pictures of nothing, as a caller hands them over."""
+    for k in range(count):
+        np.savez(folder / f"{k}.npz")
+        (folder / f"{k}.json").write_text("{}")
+
+
+def test_the_child_ends_when_nothing_is_left_to_draw(tmp_path):
+    asked_for(tmp_path, 2)
+    drawing.work(tmp_path, Other(os.getpid()), lambda job, path: path.write_text("drawn"))
+    # and nobody has said that there are no more
+    assert sorted(p.name for p in tmp_path.glob("*.png")) == ["0.png", "1.png"]
+
+
+def fake_child(tmp_path, monkeypatch, code):
+    """A child that runs this code with its folder as `room`, and how often it was started so far."""
+    fake, starts = tmp_path / "python", tmp_path / "starts"
+    fake.write_text(
+        f"#!{sys.executable}\nimport pathlib, sys\nroom = pathlib.Path(sys.argv[3])\n"
+        f"starts = pathlib.Path({str(starts)!r})\nstarts.open('a').write('x')\n"
+        f"def draw():\n    for job in room.glob('?.json'):\n"
+        f"        job.with_suffix('.png').write_bytes(b'drawn')\n{code}\n"
+    )
+    fake.chmod(0o755)
+    monkeypatch.setattr(render.sys, "executable", str(fake))
+    return starts
+
+
+def test_another_child_draws_what_comes_after_the_first_has_ended(drawable, tmp_path, monkeypatch):
+    starts = fake_child(tmp_path, monkeypatch, "draw()")
+    first, second = bending_jobs(drawable, tmp_path / "out")
+    with Drawing([first]) as pictures:
+        pictures._child.wait()
+        pictures.add(second)
+        pictures._child.wait()
+        assert starts.read_text() == "xx"  # while the caller does something else
+        assert all(result.ok for result in pictures.results())
+    assert starts.read_text() == "xx" and len(list((tmp_path / "out").iterdir())) == 2
+
+
+def test_no_picture_is_lost_that_is_handed_over_to_a_child_about_to_end(
+    drawable, tmp_path, monkeypatch
+):
+    # the first has looked for the last time, and is still there as both are handed over
+    code = "import time\nif len(starts.read_text()) > 1: draw()\nelse: time.sleep(1)"
+    starts = fake_child(tmp_path, monkeypatch, code)
+    assert all(result.ok for result in render_modes(bending_jobs(drawable, tmp_path / "out")))
+    assert starts.read_text() == "xx" and len(list((tmp_path / "out").iterdir())) == 2
+
+
+def test_a_child_that_leaves_no_picture_is_not_started_for_ever(drawable, tmp_path, monkeypatch):
+    starts = fake_child(tmp_path, monkeypatch, "")
+    results = render_modes(bending_jobs(drawable, tmp_path / "out"))
+    assert all("left no picture" in result.reason for result in results)
+    assert 2 <= len(starts.read_text()) <= 3
 
 
 def volumes(points, cells, vtk_name):

@@ -3,7 +3,8 @@
     python -m solidgear.show.drawing FOLDER CALLER
 
 :mod:`solidgear.show.render` starts it, with the number of its process, and reads how it ended; it
-imports next to nothing of solidgear, and so starts quickly.
+imports next to nothing of solidgear, and so starts quickly. It ends when nothing has been left to
+draw for a moment, so that its memory is free while the next model is solved.
 """
 
 from __future__ import annotations
@@ -32,6 +33,8 @@ USABLE = (0.90, 0.68)
 EDGE, OUTLINE = "#202020", "#5c6b7a"
 #: file that says that all pictures are asked for, and s between two looks for it and them
 LAST, PAUSE = "last", 0.02
+#: s without a picture to draw after which the process ends
+IDLE = 0.4
 ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
 #: rad; by which a viewer stands from the middle of a shaft towards its start
 TURN = np.deg2rad(22)
@@ -52,17 +55,18 @@ def _main(room: Path, caller: Other) -> int:
 
 
 def work(room: Path, caller: Other, draw: Callable[..., None]) -> None:
-    """Draw the pictures that are asked for in a folder until there are no more."""
-    index = 0
+    """Draw the pictures that are asked for in a folder until there are no more, or none for a while."""
+    index, idle = 0, 0.0
     while True:
         no_more = (room / LAST).exists()
         if (room / f"{index}.json").exists():
             _drawn(room, index, draw)
-            index += 1
-        elif no_more or not caller.alive:
+            index, idle = index + 1, 0.0
+        elif no_more or idle > IDLE or not caller.alive:
             break
         else:
             time.sleep(PAUSE)
+            idle += PAUSE
 
 
 def _drawn(room: Path, index: int, draw: Callable[..., None]) -> None:
