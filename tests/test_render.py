@@ -20,13 +20,15 @@ import solidgear as sg
 from solidgear.comparison.page import write
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
+from solidgear.core.machine.processes import Other
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.core.solve.modes import Mode
-from solidgear.show import render
+from solidgear.show import canvas, drawing, render
 from solidgear.show.folder import OWN, clear
 from solidgear.show.outputs import OUTPUTS, Output, node_order, write_vtu
 from solidgear.show.render import PACKAGES, Drawing, RenderJob, render_modes
+from solidgear.show.scales import MOTION, YLORRD
 
 ROOT = Path(__file__).parents[1]
 SOLID = {"refinement": 0.5}
@@ -130,7 +132,7 @@ def test_what_does_not_fit_is_refused(drawable):
         body.surface({0: np.zeros(3)})
 
 
-def drawing(drawable, folder):
+def bending_jobs(drawable, folder):
     jobs = []
     for fidelity in ("timoshenko", "harmonic"):
         body, modes = drawable(fidelity)
@@ -145,7 +147,7 @@ def test_pictures(drawable, tmp_path):
     from matplotlib.image import imread
     from PIL import Image
 
-    jobs = drawing(drawable, tmp_path)
+    jobs = bending_jobs(drawable, tmp_path)
     still = jobs[0].surface
     dead = RenderJob(
         type(still)(still.points, 0 * still.points, still.faces, still.triangles, still.lines),
@@ -175,7 +177,7 @@ def test_pictures(drawable, tmp_path):
 
 def test_without_a_renderer_there_is_a_sentence_and_no_file(drawable, tmp_path, monkeypatch):
     monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
-    results = render_modes(drawing(drawable, tmp_path))
+    results = render_modes(bending_jobs(drawable, tmp_path))
     assert len(results) == 2
     for r in results:
         assert not r.ok
@@ -196,7 +198,7 @@ def test_a_child_that_dies_or_hangs_is_survived(drawable, tmp_path, monkeypatch,
     fake.chmod(0o755)
     monkeypatch.setattr(render.sys, "executable", str(fake))
     out = tmp_path / "out"
-    results = render_modes(drawing(drawable, out), timeout=timeout)
+    results = render_modes(bending_jobs(drawable, out), timeout=timeout)
     assert [r.ok for r in results] == [False, False]
     assert all(PACKAGES in r.reason for r in results)
     assert ("signal 11" in results[0].reason) == ("SIGSEGV" in death)
@@ -212,7 +214,7 @@ def test_a_child_is_gone_when_its_caller_has_left(drawable, tmp_path, monkeypatc
     )
     fake.chmod(0o755)
     monkeypatch.setattr(render.sys, "executable", str(fake))
-    with pytest.raises(KeyboardInterrupt), Drawing(drawing(drawable, tmp_path)):
+    with pytest.raises(KeyboardInterrupt), Drawing(bending_jobs(drawable, tmp_path)):
         while not (told.exists() and told.read_text()):
             time.sleep(0.01)
         os.kill(int(told.read_text()), 0)  # it is there
@@ -240,8 +242,115 @@ def test_the_child_starts_without_the_rest_of_the_package():
         "solidgear.core.registry",
         "solidgear.rooms",
         "solidgear.show",
+        "solidgear.show.canvas",
         "solidgear.show.drawing",
+        "solidgear.show.scales",
     }
+
+
+def test_a_picture_is_drawn_without_the_plotter_of_pyvista_and_matplotlib():
+    code = """
+import sys
+import numpy as np
+from solidgear.show.canvas import Canvas, Shading, edges_of, scale_of, surface_of
+corners = np.array([[0.0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]])
+body = surface_of(corners, np.array([[0, 2, 1], [0, 1, 3], [1, 2, 3], [0, 3, 2]]))
+canvas, scale = Canvas(60, 60), scale_of(("#ff0000", "#00ff00"), (0.0, 1.0))
+canvas.smooth(body, np.arange(4) / 3, scale, Shading(1.0, 0.0))
+canvas.lines(edges_of(body), "#0000ff", 2.0, nearer=np.zeros(3))
+canvas.silhouette(body, "#000000", 2.0)
+canvas.words("a", 0.9, 12)
+canvas.bar(scale, 0.5, 8, 3, "%.1f")
+canvas.aim(np.full(3, 0.3), np.ones(3), np.array([0.0, 0, 1]), 3.0)
+canvas.axes()
+print(len(np.unique(canvas.pixels())), sorted({"matplotlib", "pyvista.plotting"} & set(sys.modules)))
+"""
+    out = subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        env={
+            "VTK_DEFAULT_OPENGL_WINDOW": "vtkEGLRenderWindow",
+            **os.environ,
+            "PYTHONPATH": str(ROOT),
+        },
+    )
+    if out.returncode < 0:
+        pytest.skip("there is no OpenGL")
+    levels, _, imported = out.stdout.strip().partition(" ")
+    assert imported == "[]" and int(levels) > 20, out.stderr
+
+
+def test_colours_are_those_of_their_names():
+    from matplotlib import colormaps
+
+    share = np.linspace(0, 1, canvas.STEPS)
+    for ramp, named, at, most in (
+        # samples of viridis, between which it bends by 4 of 255
+        (MOTION, "viridis", 0.14 + 0.86 * share, 5),
+        # the colours that it is made of: no more than rounding to bytes
+        (YLORRD, "YlOrRd", share, 1),
+    ):
+        scale = canvas.scale_of(ramp, (0.0, 1.0))
+        table = [scale.GetTableValue(k)[:3] for k in range(canvas.STEPS)]
+        np.testing.assert_allclose(table, colormaps[named](at)[:, :3], rtol=0, atol=most / 255)
+
+
+def asked_for(folder, count):
+    """Pictures of nothing, as a caller hands them over."""
+    for k in range(count):
+        np.savez(folder / f"{k}.npz")
+        (folder / f"{k}.json").write_text("{}")
+
+
+def test_the_child_ends_when_nothing_is_left_to_draw(tmp_path):
+    asked_for(tmp_path, 2)
+    drawing.work(tmp_path, Other(os.getpid()), lambda job, path: path.write_text("drawn"))
+    # and nobody has said that there are no more
+    assert sorted(p.name for p in tmp_path.glob("*.png")) == ["0.png", "1.png"]
+
+
+def fake_child(tmp_path, monkeypatch, code):
+    """A child that runs this code with its folder as `room`, and how often it was started so far."""
+    fake, starts = tmp_path / "python", tmp_path / "starts"
+    fake.write_text(
+        f"#!{sys.executable}\nimport pathlib, sys\nroom = pathlib.Path(sys.argv[3])\n"
+        f"starts = pathlib.Path({str(starts)!r})\nstarts.open('a').write('x')\n"
+        f"def draw():\n    for job in room.glob('?.json'):\n"
+        f"        job.with_suffix('.png').write_bytes(b'drawn')\n{code}\n"
+    )
+    fake.chmod(0o755)
+    monkeypatch.setattr(render.sys, "executable", str(fake))
+    return starts
+
+
+def test_another_child_draws_what_comes_after_the_first_has_ended(drawable, tmp_path, monkeypatch):
+    starts = fake_child(tmp_path, monkeypatch, "draw()")
+    first, second = bending_jobs(drawable, tmp_path / "out")
+    with Drawing([first]) as pictures:
+        pictures._child.wait()
+        pictures.add(second)
+        pictures._child.wait()
+        assert starts.read_text() == "xx"  # while the caller does something else
+        assert all(result.ok for result in pictures.results())
+    assert starts.read_text() == "xx" and len(list((tmp_path / "out").iterdir())) == 2
+
+
+def test_no_picture_is_lost_that_is_handed_over_to_a_child_about_to_end(
+    drawable, tmp_path, monkeypatch
+):
+    # the first has looked for the last time, and is still there as both are handed over
+    code = "import time\nif len(starts.read_text()) > 1: draw()\nelse: time.sleep(1)"
+    starts = fake_child(tmp_path, monkeypatch, code)
+    assert all(result.ok for result in render_modes(bending_jobs(drawable, tmp_path / "out")))
+    assert starts.read_text() == "xx" and len(list((tmp_path / "out").iterdir())) == 2
+
+
+def test_a_child_that_leaves_no_picture_is_not_started_for_ever(drawable, tmp_path, monkeypatch):
+    starts = fake_child(tmp_path, monkeypatch, "")
+    results = render_modes(bending_jobs(drawable, tmp_path / "out"))
+    assert all("left no picture" in result.reason for result in results)
+    assert 2 <= len(starts.read_text()) <= 3
 
 
 def volumes(points, cells, vtk_name):

@@ -16,8 +16,8 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.scene.closed_form import volume_of
 from solidgear.core.scene.outline import Outline
 from solidgear.show import packing, viewer
-from solidgear.show.drawing import colours
 from solidgear.show.packing import mesh_of
+from solidgear.show.scales import MOTION, rgb
 from solidgear.show.turning import picks, turned
 from tests.command import command
 
@@ -226,9 +226,12 @@ def test_the_command_writes_a_page_also_where_nothing_can_be_drawn(tmp_path, mon
     assert refused.exit_code == 1 and isinstance(refused.exception, SolidgearError)
 
 
-def test_a_page_has_the_colours_of_pictures():
-    ramp = colours()(np.linspace(0, 1, len(viewer.RAMP)))[:, :3]
-    np.testing.assert_allclose(viewer.RAMP, ramp, atol=5.1e-4)
+def test_a_page_has_the_colours_of_pictures(drawable):
+    fragment = viewer.viewer_fragment([turned(*drawable("timoshenko"))])
+    given = np.reshape(told(fragment)["ramp"], (-1, 3))
+    # a place of the four that are written
+    np.testing.assert_allclose(given, [rgb(c) / 255 for c in MOTION], rtol=0, atol=1e-4)
+    assert f"uRamp[{len(MOTION)}]" in fragment and ", ".join(MOTION) in fragment
 
 
 def test_points_that_coincide_are_those_that_a_tree_finds():

@@ -172,8 +172,6 @@ def compare(
     def study(progress: Progress) -> Sheet:
         with held(out), Drawing() as drawing:
             pictures = Pictures(drawing, out)
-            if renders:
-                drawing.begin()
             solved = pictures.begin_early if renders else nothing
             comparison = compared(loaded, names, settings=chosen, progress=progress, solved=solved)
             comparison.began = BEGUN  # imports and reading count as well

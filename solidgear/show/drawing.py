@@ -3,7 +3,8 @@
     python -m solidgear.show.drawing FOLDER CALLER
 
 :mod:`solidgear.show.render` starts it, with the number of its process, and reads how it ended; it
-imports next to nothing of solidgear, and so starts quickly.
+imports next to nothing of solidgear, and so starts quickly. It ends when nothing has been left to
+draw for a moment, so that its memory is free while the next model is solved.
 """
 
 from __future__ import annotations
@@ -12,11 +13,14 @@ import json
 import os
 import sys
 import time
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 
 from solidgear.core.machine.processes import Other
+from solidgear.show.canvas import BLACK, Canvas, Shading, edges_of, scale_of, surface_of, wires_of
+from solidgear.show.scales import MOTION, YLORRD
 
 SIZE = (1200, 700)
 #: height of a title over several frames
@@ -25,9 +29,12 @@ HEADING = 44
 SWING = 0.08
 #: share of a frame, across and up, that a shape may fill
 USABLE = (0.90, 0.68)
-OUTLINE = "#5c6b7a"
+#: colours of sharp edges as moved, and of the shape at rest
+EDGE, OUTLINE = "#202020", "#5c6b7a"
 #: file that says that all pictures are asked for, and s between two looks for it and them
 LAST, PAUSE = "last", 0.02
+#: s without a picture to draw after which the process ends
+IDLE = 0.4
 ARRAYS = ("points", "displacement", "faces", "triangles", "lines")
 #: rad; by which a viewer stands from the middle of a shaft towards its start
 TURN = np.deg2rad(22)
@@ -41,48 +48,53 @@ def _main(room: Path, caller: Other) -> int:
     if os.environ.get("SOLIDGEAR_RENDERER") == "none":
         print("SOLIDGEAR_RENDERER=none", file=sys.stderr)
         return 3
-    import pyvista as pv
-
-    pv.OFF_SCREEN = True
     # Drawing nothing is what fails where there is no OpenGL.
-    probe = pv.Plotter(off_screen=True, window_size=[16, 16])
-    probe.show(auto_close=False)
-    probe.close()
-    index = 0
-    while True:
-        no_more = (room / LAST).exists()
-        if (room / f"{index}.json").exists():
-            _drawn(pv, room, index)
-            index += 1
-        elif no_more or not caller.alive:
-            break
-        else:
-            time.sleep(PAUSE)
+    Canvas(16, 16).pixels()
+    work(room, caller, _draw)
     return 0
 
 
-def _drawn(pv, room: Path, index: int) -> None:
+def work(room: Path, caller: Other, draw: Callable[..., None]) -> None:
+    """Draw the pictures that are asked for in a folder until there are no more, or none for a while."""
+    index, idle = 0, 0.0
+    while True:
+        no_more = (room / LAST).exists()
+        if (room / f"{index}.json").exists():
+            _drawn(room, index, draw)
+            index, idle = index + 1, 0.0
+        elif no_more or idle > IDLE or not caller.alive:
+            break
+        else:
+            time.sleep(PAUSE)
+            idle += PAUSE
+
+
+def _drawn(room: Path, index: int, draw: Callable[..., None]) -> None:
     """Draw a picture, or write why it could not be drawn."""
     target, partial = room / f"{index}.png", room / f"{index}.part.png"
-    if target.exists():
+    reason = room / f"{index}.txt"
+    if target.exists() or reason.exists():
         return  # by an earlier child
     job = json.loads((room / f"{index}.json").read_text(encoding="utf-8"))
     try:
-        with np.load(room / f"{index}.npz") as store:
-            arrays = [store[name] for name in ARRAYS]
-            if "shades" in store:
-                _draw_shaded(pv, job, partial, store["shades"], *arrays)
-            else:
-                _draw(pv, job, partial, *arrays)
+        with np.load(room / f"{index}.npz") as arrays:
+            draw(job, partial, **arrays)
         os.replace(partial, target)
     except Exception as error:  # a bad picture must not cost the others
-        reason = " ".join(f"{type(error).__name__}: {error}".split())
-        (room / f"{index}.txt").write_text(reason, encoding="utf-8")
+        words = " ".join(f"{type(error).__name__}: {error}".split())
+        reason.write_text(words, encoding="utf-8")
 
 
-def _draw(pv, job, path, points, displacement, faces, triangles, lines):
-    from PIL import Image  # pyvista brings it along
+def _draw(job, path, shades=None, **surface):
+    """Write the picture of a job."""
+    if shades is None:
+        _draw_moved(job, path, **surface)
+    else:
+        _draw_shaded(job, path, shades, **surface)
 
+
+def _draw_moved(job, path, points, displacement, faces, triangles, lines):
+    """Draw a deformed shape over the shape at rest, in every frame of a job."""
     size = np.linalg.norm(displacement, axis=1)
     if not np.isfinite(size).all() or not size.max() > 0:
         raise ValueError("the displacement is zero or not finite")
@@ -90,78 +102,59 @@ def _draw(pv, job, path, points, displacement, faces, triangles, lines):
     displacement = displacement * (SWING * length / size.max())
     view = _view(displacement) if job["along"] else FROM_ABOVE
     displacement = displacement * _sign(points, displacement, view[0])
-    cells = _cells(faces, triangles)
-    undeformed = pv.PolyData(points, cells)
+    # from above more of a surface faces the lamps
+    look = Shading(ambient=0.5 if job["along"] else 0.3, diffuse=0.7, specular=0.05)
+    scale = scale_of(MOTION, (0.0, 1.0))
+    # Lines on a surface are brought a hair nearer, or they would sink into it here and there.
+    nearer = 0.004 * length * view[3]
+    rest = surface_of(points, faces, triangles)
     frames = job["frames"]
     extremes = np.vstack([points, *(points + factor * displacement for factor, _ in frames)])
     down, across = _layout(len(frames), extremes, view)
-    tile = [SIZE[0] // across, SIZE[1] // down]
+    tile = SIZE[0] // across, SIZE[1] // down
     # one title over several frames, which have no room for it
-    head = _heading(pv, job["title"]) if len(frames) > 1 else np.empty((0, SIZE[0], 3), np.uint8)
+    head = _heading(job["title"]) if len(frames) > 1 else np.empty((0, SIZE[0], 3), np.uint8)
     picture = np.full((SIZE[1], SIZE[0], 3), 255, np.uint8)
     # A window a frame: smoothing of edges leaves all but one part of a divided window black.
     for k, (factor, caption) in enumerate(frames):
-        p = pv.Plotter(off_screen=True, window_size=tile, lighting="none")
-        p.set_background("white")
-        p.enable_anti_aliasing("ssaa")
-        deformed = pv.PolyData(points + factor * displacement, cells)
-        deformed["size"] = abs(factor) * size / size.max()
-        body = _frame(pv, p, undeformed, deformed, lines, length, view, job["along"])
-        _words(p, "" if len(head) else job["title"], caption)
-        if k == 0:
-            _axes(p)
+        canvas = Canvas(*tile)
+        _lamps(canvas, length, view)
+        moved = surface_of(points + factor * displacement, faces, triangles)
+        canvas.smooth(moved, abs(factor) * size / size.max(), scale, look)
+        canvas.lines(wires_of(moved.points, lines), BLACK, 2.0, nearer=nearer, opacity=0.2)
+        canvas.lines(edges_of(moved), EDGE, 3.0, nearer=nearer)
+        canvas.lines(edges_of(rest), OUTLINE, 3.0, nearer=nearer)
+        canvas.silhouette(rest, OUTLINE, 3.5)
+        _words(canvas, "" if len(head) else job["title"], caption)
         if k == len(frames) - 1:
-            _bar(p, body, len(frames))
-        _aim(p, points, extremes, tile[1] / tile[0], *view[1:])
-        drawn = p.screenshot(return_img=True)
-        p.close()
+            _bar(canvas, scale, len(frames))
+        _aim(canvas, points, extremes, tile[1] / tile[0], *view[1:])
+        if k == 0:
+            canvas.axes()
         top, x = k // across * tile[1], k % across * tile[0]
-        picture[top : top + tile[1], x : x + tile[0]] = drawn[..., :3]
-    _in_few_colours(Image.fromarray(np.concatenate([head, picture]))).save(path, optimize=True)
+        picture[top : top + tile[1], x : x + tile[0]] = canvas.pixels()
+    _write(np.concatenate([head, picture]), path)
 
 
-def _draw_shaded(pv, job, path, shades, points, _, faces, triangles, lines):
+def _draw_shaded(job, path, shades, points, displacement, faces, triangles, lines):
     """Draw a surface at rest, its faces in the colours of shades, seen from the side of the largest."""
-    from PIL import Image
-
     if not np.isfinite(shades).all() or not shades.max() > 0:
         raise ValueError("the shades are zero or not finite")
-    surface = pv.PolyData(points, _cells(faces, triangles))
-    surface.cell_data["shade"] = np.clip(shades / shades.max(), FAINT, 1.0)
     view = _facing(points, faces if len(faces) else triangles, shades)
     length = np.ptp(points, axis=0).max()
-    p = pv.Plotter(off_screen=True, window_size=list(SHADED), lighting="none")
-    p.set_background("white")
-    p.enable_anti_aliasing("ssaa")
-    _lamps(pv, p, length, view)
-    body = p.add_mesh(
-        surface,
-        scalars="shade",
-        cmap="YlOrRd",
-        log_scale=True,
-        clim=(FAINT, 1.0),
-        show_scalar_bar=False,
-        ambient=0.6,
-        diffuse=0.5,
-        specular=0.0,
-    )
     nearer = 0.004 * length * view[3]
-    p.add_mesh(
-        _wires(pv, points + nearer, lines),
-        color="black",
-        line_width=1.0,
-        opacity=0.25,
-        lighting=False,
-    )
-    p.add_silhouette(surface, color=OUTLINE, line_width=3.5, feature_angle=None)
-    _words(p, job["title"], "")
-    _axes(p)
-    _bar(p, body, 1, job["shade"], 4, "%.3g")
-    _aim(p, points, points, SHADED[1] / SHADED[0], *view[1:])
-    drawn = p.screenshot(return_img=True)
-    p.close()
+    surface, scale = surface_of(points, faces, triangles), scale_of(YLORRD, (FAINT, 1.0), log=True)
+    canvas = Canvas(*SHADED)
+    _lamps(canvas, length, view)
+    canvas.flat(surface, np.clip(shades / shades.max(), FAINT, 1.0), scale, Shading(0.6, 0.5))
+    canvas.lines(wires_of(points, lines), BLACK, 1.0, nearer=nearer, opacity=0.25)
+    canvas.silhouette(surface, OUTLINE, 3.5)
+    _words(canvas, job["title"], "")
+    _bar(canvas, scale, 1, job["shade"], 4, "%.3g")
+    _aim(canvas, points, points, SHADED[1] / SHADED[0], *view[1:])
+    canvas.axes()
     # flat faces have few colours, and dots between them would take twice the bytes
-    _in_few_colours(Image.fromarray(drawn[..., :3]), dots=False).save(path, optimize=True)
+    _write(canvas.pixels(), path, dots=False)
 
 
 def _facing(points, faces, shades):
@@ -177,17 +170,16 @@ def _facing(points, faces, shades):
     return max(views, key=lambda view: shades @ np.maximum(areas @ view[3], 0.0))
 
 
-def _cells(faces, triangles) -> np.ndarray:
-    """Return faces as VTK lists them."""
-    return np.concatenate([np.insert(f, 0, f.shape[1], axis=1).ravel() for f in (faces, triangles)])
+def _write(pixels, path, dots=True):
+    """Write a picture with a palette, dithered with `dots`, in half the bytes."""
+    from PIL import Image  # pyvista brings it along
 
-
-def _in_few_colours(picture, dots=True):
-    """Return the picture with a palette, dithered with `dots`, in half the bytes."""
+    picture = Image.fromarray(pixels)
     # every fourth pixel of every fourth row has all colours, and takes a tenth of the time
     sample = picture.resize((picture.width // 4, picture.height // 4), resample=0)
     palette = sample.quantize(kmeans=1) if dots else sample.quantize(method=1)
-    return picture.quantize(palette=palette, dither=3 if dots else 0)
+    dither = Image.Dither.FLOYDSTEINBERG if dots else Image.Dither.NONE
+    picture.quantize(palette=palette, dither=dither).save(path, optimize=True)
 
 
 def _layout(count: int, points, view) -> tuple[int, int]:
@@ -203,144 +195,40 @@ def _layout(count: int, points, view) -> tuple[int, int]:
     return -(-count // across), across
 
 
-def _frame(pv, p, undeformed, deformed, lines, length, view, along):
-    """Draw one deformed shape over the shape at rest; return the actor with the colours."""
-    _lamps(pv, p, length, view)
-    back = view[3]
-    look = {
-        "smooth_shading": True,
-        "split_sharp_edges": True,
-        "feature_angle": 35,
-        # from above more of a surface faces the lamps
-        "ambient": 0.5 if along else 0.3,
-        "diffuse": 0.7,
-        "specular": 0.05,
-    }
-    body = p.add_mesh(
-        deformed, scalars="size", cmap=colours(), clim=(0, 1), show_scalar_bar=False, **look
-    )
-    # Lines on a surface are brought a hair nearer, or they would sink into it here and there.
-    nearer = 0.004 * length * back
-    p.add_mesh(
-        _wires(pv, deformed.points + nearer, lines),
-        color="black",
-        line_width=2.0,
-        opacity=0.2,
-        lighting=False,
-    )
-    edges = {
-        "feature_angle": 30,
-        "boundary_edges": False,
-        "non_manifold_edges": False,
-        "manifold_edges": False,
-    }
-    p.add_mesh(
-        deformed.extract_feature_edges(**edges).translate(nearer),
-        color="#202020",
-        line_width=3.0,
-        lighting=False,
-    )
-    p.add_mesh(
-        undeformed.extract_feature_edges(**edges).translate(nearer),
-        color=OUTLINE,
-        line_width=3.0,
-        lighting=False,
-    )
-    p.add_silhouette(undeformed, color=OUTLINE, line_width=3.5, feature_angle=None)
-    return body
-
-
-def _lamps(pv, p, length, view) -> None:
+def _lamps(canvas: Canvas, length, view) -> None:
     """Put a lamp over the left shoulder of the viewer and a weak one on the other side."""
     _, right, upward, back = view
-    for offset, strength in (
-        (0.7 * upward - 0.5 * right + back, 0.75),
-        (-0.5 * upward + 0.6 * right + 0.8 * back, 0.35),
-    ):
-        p.add_light(
-            pv.Light(
-                position=10 * length * offset,
-                focal_point=(0, 0, 0),
-                light_type="scene light",
-                intensity=strength,
-            )
-        )
+    canvas.lamp(10 * length * (0.7 * upward - 0.5 * right + back), 0.75)
+    canvas.lamp(10 * length * (-0.5 * upward + 0.6 * right + 0.8 * back), 0.35)
 
 
-def _heading(pv, title: str) -> np.ndarray:
+def _heading(title: str) -> np.ndarray:
     """Return pixels (height, width, 3) of a title over several frames."""
-    p = pv.Plotter(off_screen=True, window_size=[SIZE[0], HEADING], lighting="none")
-    p.set_background("white")
-    _text(p, title, 0.3, 13)
-    drawn = p.screenshot(return_img=True)
-    p.close()
-    return drawn[..., :3]
+    canvas = Canvas(SIZE[0], HEADING)
+    canvas.words(title, 0.3, 26)
+    return canvas.pixels()
 
 
-def _words(p, title: str, caption: str) -> None:
-    """Draw title and caption of a frame, the caption smaller where it stands alone."""
-    for words, height, font in ((title, 0.92, 15), (caption, 0.86, 11 if title else 9)):
+def _words(canvas: Canvas, title: str, caption: str) -> None:
+    """Write title and caption of a frame, the caption smaller where it stands alone."""
+    for words, height, size in ((title, 0.92, 30), (caption, 0.86, 22 if title else 18)):
         if words:
-            _text(p, words, height, font)
-
-
-def _text(p, words: str, height: float, font: int) -> None:
-    text = p.add_text(
-        words, position=(0.5, height), viewport=True, font_size=font, color="black", font="arial"
-    )
-    text.prop.justification_horizontal = "center"
+            canvas.words(words, height, size)
 
 
 def _bar(
-    p, body, count: int, what: str = "displacement / max", labels: int = 6, form: str = "%.1f"
+    canvas: Canvas,
+    scale,
+    count: int,
+    what: str = "displacement / max",
+    labels: int = 6,
+    form: str = "%.1f",
 ) -> None:
     """Draw the scale of colours: of a displacement or a shade as a share of the largest."""
     alone = count == 1
-    _text(p, what, 0.105 if alone else 0.12, 10 if alone else 8)
     # The bar's own title would sit on its labels.
-    bar = {
-        "title": "",
-        "label_font_size": 20 if alone else 16,
-        "color": "black",
-        "n_labels": labels if alone else 3,
-        "fmt": form,
-        "font_family": "arial",
-    }
-    wide = 0.36 if alone else 0.7
-    p.add_scalar_bar(
-        mapper=body.mapper,
-        width=wide,
-        height=0.075,
-        position_x=(1 - wide) / 2,
-        position_y=0.02,
-        **bar,
-    )
-
-
-def _axes(p) -> None:
-    p.add_axes(
-        xlabel="x",
-        ylabel="y",
-        zlabel="z",
-        color="black",
-        line_width=4,
-        label_size=(0.25, 0.13),
-        viewport=(0.0, 0.0, 0.2, 0.34),
-    )
-
-
-def colours():
-    """Return viridis without its darkest part, on which neither shading nor lines can be seen."""
-    from matplotlib import colormaps
-    from matplotlib.colors import ListedColormap
-
-    return ListedColormap(colormaps["viridis"](np.linspace(0.14, 1.0, 256)))
-
-
-def _wires(pv, points, lines):
-    out = pv.PolyData()
-    out.points, out.lines = points, np.insert(lines, 0, 2, axis=1).ravel()
-    return out
+    canvas.words(what, 0.105 if alone else 0.12, 20 if alone else 16)
+    canvas.bar(scale, 0.36 if alone else 0.7, 20 if alone else 16, labels if alone else 3, form)
 
 
 def _view(displacement):
@@ -389,17 +277,12 @@ def _sign(points, displacement, plane) -> float:
     return -1.0 if choice < 0 else 1.0
 
 
-def _aim(p, undeformed, drawn, aspect, right, upward, back):
+def _aim(canvas: Canvas, undeformed, drawn, aspect, right, upward, back):
     """Aim a parallel projection that fills the frame between title and colour bar."""
     a, b = drawn @ right, drawn @ upward
     height = max(np.ptp(b) / USABLE[1], np.ptp(a) / USABLE[0] * aspect)
     middle = (a.max() + a.min()) / 2 * right + ((b.max() + b.min()) / 2 - 0.02 * height) * upward
-    p.camera.parallel_projection = True
-    p.camera.focal_point = middle
-    p.camera.position = middle + 3 * np.ptp(undeformed, axis=0).max() * back
-    p.camera.up = upward
-    p.camera.parallel_scale = height / 2
-    p.renderer.reset_camera_clipping_range()
+    canvas.aim(middle, 3 * np.ptp(undeformed, axis=0).max() * back, upward, height)
 
 
 if __name__ == "__main__":

@@ -103,8 +103,9 @@ def render_modes(jobs: Iterable[RenderJob], *, timeout: float = 120) -> list[Ren
 class Drawing:
     """Pictures being drawn by a child, while the caller does something else.
 
-    As a context manager: the child is gone where it is left. It starts with the first picture, or
-    before by :meth:`begin`, and ends by itself should the caller die.
+    As a context manager: the child is gone where it is left. It starts with the first picture, ends
+    by itself when it has drawn all that it was asked for, or should the caller die, and another
+    starts with the next picture: what is solved between them has its memory.
     """
 
     def __init__(self, jobs: Iterable[RenderJob] = (), *, timeout: float = 120):
@@ -117,7 +118,7 @@ class Drawing:
         self._folder = tempfile.TemporaryDirectory(
             prefix="solidgear-render-", ignore_cleanup_errors=True
         )
-        self._windows = _windows()
+        self._windows = _windows()  # the first is the one that is tried
         try:
             for job in self._first:
                 self.add(job)
@@ -126,16 +127,13 @@ class Drawing:
             raise
         return self
 
-    def begin(self) -> None:
-        """Start the child, which needs a second before it can draw."""
-        if self._child is None and not self._end:
-            self._end = self._start()
-
     def add(self, job: RenderJob) -> None:
         """Begin a picture."""
         self._hand_over(len(self.jobs), job)
         self.jobs.append(job)
-        self.begin()
+        # after a child that failed, `results` tries the other windows
+        if not self._end and (self._child is None or self._child.poll() == 0):
+            self._end = self._start()
 
     def __exit__(self, *_) -> None:
         if self._child is not None and self._child.poll() is None:
@@ -149,8 +147,12 @@ class Drawing:
             return []
         (self._room / LAST).touch()
         end = self._end or self._wait()
+        # A picture may have been handed over as the child ended: no later one ends before `LAST`.
+        if not end and not self._answered:
+            end = self._start() or self._wait()
         # A child that reached the end of its list has said all there is to say.
-        while end and self._windows and self._patience.remaining > 0:
+        while end and self._windows[1:] and self._patience.remaining > 0:
+            self._windows.pop(0)
             end = self._start() or self._wait()
         return [
             RenderResult(job.path, _collect(self._room, i, job.path, end))
@@ -160,6 +162,13 @@ class Drawing:
     @property
     def _room(self) -> Path:
         return Path(self._folder.name)
+
+    @property
+    def _answered(self) -> bool:
+        """Whether every job has its picture, or the reason why there is none."""
+        return all(
+            any(file.exists() for file in _answers(self._room, i)) for i in range(len(self.jobs))
+        )
 
     def _hand_over(self, index: int, job: RenderJob) -> None:
         """Write a job as files for the child."""
@@ -179,10 +188,9 @@ class Drawing:
         os.replace(partial, self._room / f"{index}.json")
 
     def _start(self) -> str:
-        """Start a child on the remaining pictures in the next window; return why it could not."""
+        """Start a child on the remaining pictures; return why it could not."""
         env = dict(os.environ)
-        window = self._windows.pop(0)
-        if window:
+        if window := self._windows[0]:
             env[WINDOW] = window
         # The child must find the same solidgear, wherever the caller runs.
         root = str(Path(__file__).resolve().parents[2])
@@ -235,9 +243,14 @@ def _windows() -> list[str | None]:
     ]
 
 
+def _answers(room: Path, index: int) -> tuple[Path, Path]:
+    """Return the picture that a child makes of a job, and the reason that it leaves instead."""
+    return room / f"{index}.png", room / f"{index}.txt"
+
+
 def _collect(room: Path, index: int, path: Path, end: str) -> str:
     """Move a finished picture to its place, or return why there is none and how to mend it."""
-    drawn, errors = room / f"{index}.png", room / f"{index}.txt"
+    drawn, errors = _answers(room, index)
     if errors.exists():
         return f"the picture {path.name} could not be drawn: {errors.read_text(encoding='utf-8')}"
     if drawn.exists():

@@ -117,6 +117,17 @@ def log_ticks(low: float, high: float) -> list[float]:
     return [place for place in places if low <= place <= high]
 
 
+def rgb(colour: str) -> np.ndarray:
+    """Return red, green and blue of a colour, each up to 255.
+
+    Examples
+    --------
+    >>> rgb("#ff8000").tolist()
+    [255, 128, 0]
+    """
+    return np.array([int(colour[i : i + 2], 16) for i in (1, 3, 5)])
+
+
 class Shade(NamedTuple):
     """Colours of the numbers of a key of the rows, on a logarithmic scale."""
 
@@ -134,10 +145,7 @@ class Shade(NamedTuple):
         share = math.log(min(max(value, low), high) / low) / math.log(high / low)
         place = share * (len(self.colours) - 1)
         k = min(int(place), len(self.colours) - 2)
-        ends = (
-            np.array([int(c[i : i + 2], 16) for i in (1, 3, 5)]) for c in self.colours[k : k + 2]
-        )
-        first, second = ends
+        first, second = map(rgb, self.colours[k : k + 2])
         mixed = np.rint(first + (place - k) * (second - first)).astype(int)
         return "#" + "".join(f"{part:02x}" for part in mixed)
 
@@ -150,4 +158,16 @@ HEAT = (
 VIRIDIS = (
     *("#440154", "#482878", "#3e4a89", "#31688e", "#26828e"),
     *("#1f9e89", "#35b779", "#6ece58", "#b5de2b", "#fde725"),
+)
+#: displacements of shapes, as many as `uRamp` in viewer.js has: viridis, sampled, without its darkest
+#: part, on which neither shading nor lines can be seen
+MOTION = (
+    *("#46307e", "#424186", "#3b518b", "#34608d", "#2e6d8e", "#297a8e"),
+    *("#24878e", "#1f948c", "#1fa188", "#27ad81", "#3aba76", "#54c568"),
+    *("#70cf57", "#93d741", "#b8de29", "#dde318", "#fde725"),
+)
+#: shares of the faces of a surface: YlOrRd of nine colours, by Cynthia Brewer, colorbrewer2.org
+YLORRD = (
+    *("#ffffcc", "#ffeda0", "#fed976", "#feb24c", "#fd8d3c", "#fc4e2a"),
+    *("#e31a1c", "#bd0026", "#800026"),
 )

@@ -21,6 +21,7 @@ from solidgear.core.machine.whole_file import write_page
 from solidgear.show.drawing import SWING
 from solidgear.show.packing import packed
 from solidgear.show.page_parts import template
+from solidgear.show.scales import MOTION, rgb
 from solidgear.show.turning import Turned, picks, turned
 
 if TYPE_CHECKING:
@@ -37,27 +38,6 @@ TURNED = "modes.html"
 START, END = "<!-- solidgear viewer: start -->", "<!-- solidgear viewer: end -->"
 #: the still picture of a viewer in its page
 STILL = re.compile(r' has-still(?=")|<img src="data:[^"]*" alt="Mode shape, deformation enlarged">')
-#: colours (red, green, blue) that the displacement runs through, as many as `uRamp` in viewer.js has:
-#: those of :func:`solidgear.show.drawing.colours`, for which matplotlib takes half a second to import
-RAMP = (
-    (0.276, 0.19, 0.493),
-    (0.257, 0.256, 0.527),
-    (0.232, 0.318, 0.545),
-    (0.205, 0.376, 0.554),
-    (0.181, 0.43, 0.557),
-    (0.161, 0.479, 0.558),
-    (0.141, 0.53, 0.556),
-    (0.123, 0.582, 0.547),
-    (0.122, 0.633, 0.53),
-    (0.158, 0.684, 0.502),
-    (0.226, 0.729, 0.463),
-    (0.328, 0.774, 0.407),
-    (0.449, 0.814, 0.335),
-    (0.586, 0.847, 0.25),
-    (0.731, 0.872, 0.156),
-    (0.876, 0.891, 0.095),
-    (0.993, 0.906, 0.144),
-)
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -144,7 +124,7 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "
     modes = picks(models)
     payload = {
         "first": max(models[0].index(first or "bending 1"), 0),
-        "ramp": [part for colour in RAMP for part in colour],
+        "ramp": [round(part / 255, 4) for colour in MOTION for part in rgb(colour).tolist()],
         "models": drawn,
         "modes": modes,
     }
@@ -156,7 +136,7 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "
         still=still,
         titles=[model.title for model in models],
         modes=[mode["name"] for mode in modes],
-        ramp=", ".join(f"rgb({r:.1%} {g:.1%} {b:.1%})" for r, g, b in RAMP),
+        ramp=", ".join(MOTION),
     )
     return f"{START}\n{markup}\n{END}"
 
