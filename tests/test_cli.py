@@ -434,7 +434,7 @@ RUN = {
     "core.models.solid cuts.features guards show.render",
     "modes {scene} -f harmonic --set order=3 --set layers=1": "comparison core.bounds.solid "
     "core.meshing.tetrahedra core.models.solid cuts.features show.render",
-    "check {scene}": "comparison core.bounds.solid show.render",
+    "check {scene}": "comparison core.bounds.solid cuts.features show.render",
 }
 IMPORTED = """
 import gc, shlex, sys
