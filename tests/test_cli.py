@@ -420,7 +420,7 @@ def test_help_without_the_work_is_that_of_the_command_itself(run, monkeypatch, n
 
 #: modules that no command on a shaft without catalogue bearings has a use for
 UNUSED = """
-    gmsh matplotlib pint pyvista scipy.interpolate scipy.optimize scipy.stats
+    email.message gmsh matplotlib pint pyvista scipy.interpolate scipy.optimize scipy.stats
     numpy.f2py numpy.testing
     solidgear.backlash solidgear.bearings.solved solidgear.comparison.race.command
     solidgear.comparison.race.timing solidgear.comparison.two solidgear.core.system
@@ -430,11 +430,11 @@ UNUSED = """
 #: what is run after one another in one process, and further modules that none has had a use for
 #: until then
 RUN = {
-    "answer {scene} --tol 0.1": "comparison core.bounds.solid core.judge.where core.models.solid "
-    "guards.probe show.render",
+    "answer {scene} --tol 0.1": "comparison core.bounds.solid core.judge.record core.judge.where "
+    "core.models.solid cuts.features guards show.render",
     "modes {scene} -f harmonic --set order=3 --set layers=1": "comparison core.bounds.solid "
-    "core.meshing.tetrahedra core.models.solid show.render",
-    "check {scene}": "comparison core.bounds.solid show.render",
+    "core.meshing.tetrahedra core.models.solid cuts.features show.render",
+    "check {scene}": "comparison core.bounds.solid cuts.features show.render",
 }
 IMPORTED = """
 import gc, shlex, sys

@@ -107,7 +107,8 @@ def test_a_scene_from_standard_input(monkeypatch):
 
 
 def test_version_quiet_and_exit_codes(tmp_path):
-    assert command("--version").stdout == "solidgear 0.1.0\n"
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))["project"]
+    assert command("--version").stdout == f"solidgear {project['version']}\n"
     assert "3 the tolerance is not reached" in command("--help").stdout.replace("\n ", "")
     scene = ROOT / "geometry" / "cylinder_free.toml"
     loud = command("answer", scene, "--ask", "bending")

@@ -18,7 +18,8 @@ from solidgear.app.modes import modes_table
 from solidgear.comparison.page import charts
 from solidgear.comparison.recording import Findings, as_record, recorded
 from solidgear.core.errors import SolidgearError
-from solidgear.core.judge.record import SCHEMA, OpenNumbers, Record
+from solidgear.core.judge.open_numbers import OpenNumbers
+from solidgear.core.judge.record import SCHEMA, Record
 from solidgear.show import viewer
 from solidgear.show.page_parts import data_uri
 from solidgear.show.plot import WIDE

@@ -247,7 +247,7 @@ scene = sg.load(path)
 missing("pardiso")
 sg.condense(sg.build(scene, "timoshenko"), scene, scene.port.name)
 import solidgear.core.models.harmonic.body, solidgear.core.models.solid.body
-with one_run() as run:
+with one_run(watched=True) as run:
     body = sg.build(scene, model, **options)
     sg.condense(body, scene, scene.port.name)
     sg.modes(body, scene, n=10)

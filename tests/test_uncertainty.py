@@ -9,7 +9,8 @@ import solidgear as sg
 from solidgear.comparison.page.html import numbers
 from solidgear.core import as_supports
 from solidgear.core.judge.correlation import pair_modes
-from solidgear.core.judge.record import IntervalRecord, Record
+from solidgear.core.judge.open_numbers import IntervalRecord
+from solidgear.core.judge.record import Record
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene.uncertain import with_ranges
 from solidgear.show.open_words import acting, interval, parts

@@ -8,7 +8,7 @@ import sys
 import threading
 
 from solidgear.core.machine import start  # noqa: F401  before anything that takes time
-from solidgear.core.machine.later import load_later
+from solidgear.core.machine.later import load_later, loading
 from solidgear.core.machine.threads import pin
 
 # before anything imports numpy
@@ -28,7 +28,8 @@ if _hears:
     signal.signal(signal.SIGINT, _interrupted)
 
 
-from solidgear.app.application import app
+with loading("solidgear.app.application"):
+    from solidgear.app.application import app
 from solidgear.app.streams import spell_out
 from solidgear.core import SolidgearError
 from solidgear.core.errors import for_terminal

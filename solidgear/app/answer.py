@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from solidgear.core import LADDER, OpenNumbers, Scene, SolidgearError, WhereRecord
+from solidgear.core import LADDER, OpenNumbers, Scene, SolidgearError
 from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve
 from solidgear.core.judge.steps import ABOVE, BELOW
@@ -27,6 +27,7 @@ from solidgear.show.units import Units, units_named
 from solidgear.show.words import bar_of, count, percent, seconds
 
 if TYPE_CHECKING:
+    from solidgear.core import WhereRecord
     from solidgear.core.judge.where import ErrorMap
 
 
@@ -109,7 +110,11 @@ def answer_sheet(
     """
     data = answered.as_dict() | {"open": plain(open_)}
     closing: list[str | Table] = [*sentences(answered), *_of_round_part(scene, answered)]
-    if isinstance(places, WhereRecord):
+    if isinstance(places, str):
+        if places:
+            data["where"] = {"error": places}
+            closing.append(f"Where the error comes from is not known: {places}.")
+    else:
         # without the mesh and its cells
         cells = {"model", "points", "cells", "shares"}
         data["where"] = places.model_dump(exclude=cells)
@@ -119,9 +124,6 @@ def answer_sheet(
         closing += [_where_table(places, units), sentence]
         if drawn:
             closing.append(drawn)
-    elif places:
-        data["where"] = {"error": places}
-        closing.append(f"Where the error comes from is not known: {places}.")
     return Sheet(
         name="answer",
         title=scene.title or scene.name,

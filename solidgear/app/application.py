@@ -11,6 +11,7 @@ from typing import Annotated, Any, NamedTuple
 import typer
 from typer.core import TyperCommand, TyperGroup
 
+from solidgear import __version__
 from solidgear.app.options_alone import options_alone
 from solidgear.core.machine.later import loading
 from solidgear.core.machine.memory import one_command
@@ -264,9 +265,7 @@ for _group, _commands in GROUPS.items():
 
 def _version(wanted_version: bool) -> None:
     if wanted_version:
-        from importlib.metadata import version  # start-up: for this option alone
-
-        typer.echo(f"solidgear {version('solidgear')}")
+        typer.echo(f"solidgear {__version__}")
         raise typer.Exit
 
 

@@ -249,7 +249,7 @@ def compare(
     options = {m: dict((settings or {}).get(m, {})) for m in LADDER.bodies}
     findings = Findings()
     overall, began = Meter(), time.perf_counter()
-    with overall.stage("all"), one_run() as run:
+    with overall.stage("all"), one_run(watched=True) as run:
         try:
             _run(scene, models, options, findings, progress, solved)
             progress("what the data leave open")

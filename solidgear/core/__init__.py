@@ -19,8 +19,9 @@ if TYPE_CHECKING:
     from solidgear.core.frames import DOF_NAMES, rotation
     from solidgear.core.judge.change import BarredMode
     from solidgear.core.judge.deviations import WITHIN, gap_verdict
+    from solidgear.core.judge.open_numbers import OpenNumbers
     from solidgear.core.judge.quantities import change, size
-    from solidgear.core.judge.record import OpenNumbers, Record, WhereRecord
+    from solidgear.core.judge.record import Record, WhereRecord
     from solidgear.core.judge.settle import Settled, bars_of_modes, settle
     from solidgear.core.judge.solution import Solution
     from solidgear.core.ladder import build
@@ -154,7 +155,7 @@ _WHERE = {
     "WITHIN": "solidgear.core.judge.deviations",
     "gap_verdict": "solidgear.core.judge.deviations",
     "BarredMode": "solidgear.core.judge.change",
-    "OpenNumbers": "solidgear.core.judge.record",
+    "OpenNumbers": "solidgear.core.judge.open_numbers",
     "change": "solidgear.core.judge.quantities",
     "size": "solidgear.core.judge.quantities",
     "Record": "solidgear.core.judge.record",

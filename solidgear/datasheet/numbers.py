@@ -55,7 +55,7 @@ def answered_numbers(scene: Scene, tol: float | None, progress: Progress) -> Num
     progress("numbers")
     wanted = asked_for(scene, ())
     names = [*wanted]
-    if not LADDER[JUDGE].unfit(scene):  # of other solids every further number is dear
+    if LADDER[JUDGE].can_model(scene):  # of other solids every further number is dear
         names += [q for q in FREQUENCIES if q not in wanted]
     answered = answer(scene, tol, names)
     progress("what the data leave open")

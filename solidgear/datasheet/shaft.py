@@ -101,7 +101,7 @@ def _under_load(
     """Return the sheet with what the load does to the shaft at rest."""
     progress("deflection")
     scene = assembly.train.shafts[ALONE].scene
-    cuts = tuple(feature.name for feature in scene.features) if LADDER[JUDGE].unfit(scene) else ()
+    cuts = () if LADDER[JUDGE].can_model(scene) else tuple(f.name for f in scene.features)
     # what is cut out moves loads of bearings by next to nothing
     deflected = at_rest.deflect(assembly.settling(JUDGE), point)
     progress("stress")

@@ -257,7 +257,7 @@ def _solids(scene: Scene) -> list[str]:
     the scene.
     """
     fit = LADDER.fit(scene)
-    return [m for m in LADDER.of(SOLID) if m in fit or not LADDER[m].unfit(scene)]
+    return [m for m in LADDER.of(SOLID) if m in fit or LADDER[m].can_model(scene)]
 
 
 def _verdict(model: str, records: Iterable[GuardRecord]) -> Verdict:
@@ -277,7 +277,7 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     if not features:
         return
     unfit = [m for m in LADDER.names if m in (*everything(), *LADDER.fit(scene))]
-    unfit = [m for m in unfit if LADDER[m].unfit(scene)]
+    unfit = [m for m in unfit if not LADDER[m].can_model(scene)]
     if not unfit:
         return  # a part from a file may be of revolution all through
     if without_axis(scene):

@@ -231,7 +231,7 @@ def memory(probe: Probe) -> Notices:
     need = float(f"{sum(law(name, *matrix) for matrix in size.matrices):.2g}")  # good to GOOD_TO
     free = available_mb()
     smaller = "the harmonic solid, or --set refinement=0.7"
-    if LADDER["harmonic"].unfit(probe.whole):
+    if not LADDER["harmonic"].can_model(probe.whole):
         smaller = " or ".join([*(m for m in probe.solids if m != "solid"), "a coarser mesh"])
     # a mesh file is the only mesh there is
     single = probe.body.fidelity == "solid" or getattr(probe.meshed.body, "one_mesh", False)

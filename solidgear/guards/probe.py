@@ -82,19 +82,19 @@ class Probe:
         """Return advice in place of a model that does not hold: `usual`, or, where features of the
         scene forbid the models it names (by default the harmonic solid), the models that hold them.
         """
-        if not any(LADDER[m].unfit(self.whole) for m in models or ("harmonic",)):
+        if all(LADDER[m].can_model(self.whole) for m in models or ("harmonic",)):
             return usual
         return " or ".join(LADDER.holding(self.whole)) or "a scene with fewer features"
 
     @property
     def beam_fits(self) -> bool:
         """True where a beam models the scene; else a lumped model rests on a solid."""
-        return any(not LADDER[m].unfit(self.whole) for m in LADDER.of(BEAM))
+        return any(LADDER[m].can_model(self.whole) for m in LADDER.of(BEAM))
 
     @property
     def solids(self) -> tuple[str, ...]:
         """Solids that model the scene."""
-        return tuple(m for m in LADDER.of(SOLID) if not LADDER[m].unfit(self.whole))
+        return tuple(m for m in LADDER.of(SOLID) if LADDER[m].can_model(self.whole))
 
     @property
     def main(self) -> str:
@@ -274,4 +274,4 @@ class Probe:
     @property
     def meshed(self) -> Scene:
         """Scene that the 3D solid models: all of it, or the plain part where no mesh holds all."""
-        return self.scene if LADDER["solid"].unfit(self.whole) else self.whole
+        return self.whole if LADDER["solid"].can_model(self.whole) else self.scene

@@ -6,8 +6,8 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from solidgear.core import OpenNumbers, Quantity
+from solidgear.core.judge.open_numbers import IntervalRecord, OpenRecord
 from solidgear.core.judge.quantities import JUDGED
-from solidgear.core.judge.record import IntervalRecord, OpenRecord
 from solidgear.core.quantity import K_ZZ
 from solidgear.show.table import Cell, Column, Table, text
 from solidgear.show.units import Units

@@ -166,7 +166,7 @@ class Chosen(Group):
         settings = options(self.pairs)  # which says so where one is no key=value
         if settings:
             models = (MODEL, *LADDER.holding(scene)) if scene is not None else (MODEL,)
-            fit = [m for m in models if scene is None or not LADDER[m].unfit(scene)]
+            fit = [m for m in models if scene is None or LADDER[m].can_model(scene)]
             able = [m for m in fit if settings.keys() <= LADDER[m].options.keys()]
             raise SolidgearError(
                 f"--set {show(self.pairs[0], 40)} needs a fixed model: add -f "

@@ -65,11 +65,19 @@ def open_ranges(scene: Scene, body: Body | None = None) -> OpenNumbers:
 
 def may_be_open(scene: Scene) -> bool:
     """Return True where inputs of a scene may have an open value."""
-    return bool(scene.uncertain) or any(b.catalogue is not None for b in scene.bearings)
+    return bool(scene.uncertain) or _has_catalogue(scene)
+
+
+def _has_catalogue(scene: Scene) -> bool:
+    return any(bearing.catalogue is not None for bearing in scene.bearings)
 
 
 def bearing_cautions(scene: Scene) -> Iterator[str]:
-    """Yield cautions on bearings that do not fit their seat, or hold the shaft one way only."""
+    """Yield cautions on catalogue bearings that do not fit their seat, or hold the shaft one way
+    only.
+    """
+    if not _has_catalogue(scene):
+        return
     for name in ("directions", "seats"):
         remark = addition("remark", name)
         if remark:

@@ -74,7 +74,7 @@ def plan(scene: Scene, full: bool = False) -> list[Row]:
     rows = [
         Row(family, label, level, model.name, options)
         for model in LADDER
-        if not model.unfit(scene)
+        if model.can_model(scene)
         for family, label, all_options in model.series(scene, full)
         for level, options in enumerate(all_options, start=1)
     ]

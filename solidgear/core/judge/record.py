@@ -7,28 +7,18 @@ nor infinity. Quantities are called as in :data:`solidgear.core.quantity.QUANTIT
 
 from __future__ import annotations
 
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any
 
-from pydantic import (
-    AliasChoices,
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    ValidationError,
-    ValidatorFunctionWrapHandler,
-    field_validator,
-)
-from pydantic_core import PydanticUseDefault
+from pydantic import AliasChoices, BeforeValidator, ConfigDict, Field
 
 from solidgear.core.body.mode_names import ModeName, meant
-from solidgear.core.display import Displayed
+from solidgear.core.judge.open_numbers import OpenNumbers
+from solidgear.core.judge.part import Number, Part
 from solidgear.core.judge.ties import SCENE, SECTION
 from solidgear.core.ladder.model import BEAM
 from solidgear.core.plain import plain
 from solidgear.core.quantity import COMPLIANCE, Quantity
 
-Number = Annotated[float | None, BeforeValidator(plain)]
 Numbers = Annotated[list[float | None], BeforeValidator(plain)]
 Matrix = Annotated[list[list[float | None]], BeforeValidator(plain)]
 Facts = Annotated[dict[str, Any], BeforeValidator(plain)]
@@ -45,115 +35,6 @@ def relative_change(value: float | None, base: float | None) -> float | None:
 def _called(key: str, name: str) -> Any:
     """Return options of a field that JSON of every command calls in another way than its attribute."""
     return {"validation_alias": AliasChoices(key, name), "serialization_alias": key}
-
-
-class Part(BaseModel):
-    """Part of a record: fields that are missing, or None where None is not allowed, have their
-    default; unknown ones are kept. It may be made from an object with attributes of the same names.
-    """
-
-    model_config = ConfigDict(extra="allow", from_attributes=True, defer_build=True)
-
-    @field_validator("*", mode="wrap")
-    @classmethod
-    def _none_is_missing(cls, value: Any, validate: ValidatorFunctionWrapHandler) -> Any:
-        try:
-            return validate(value)
-        except ValidationError:
-            if value is None:
-                raise PydanticUseDefault from None
-            raise
-
-
-class InputRecord(Part):
-    """An open input: path in the file, source, range in words; of an estimated inside the bearing in
-    words, whose maker knows it.
-    """
-
-    path: str = ""
-    source: str = ""
-    said: str = ""
-    of: str = ""
-
-
-class IntervalRecord(Part):
-    """Lowest and highest of a number, relative to the value with all inputs as the scene says.
-
-    ``deviation`` is the relative standard deviation where every input is equally likely anywhere in
-    its range; None where it was not worked out.
-    """
-
-    low: Number = 0.0
-    high: Number = 0.0
-    deviation: Number = None
-
-
-class SampledRecord(IntervalRecord):
-    """Interval of seeded samples of all inputs together: ends of all, and of 95 % of them."""
-
-    low95: Number = None
-    high95: Number = None
-
-
-class OpenRecord(Part):
-    """A number with its interval by every input, by every source and in total.
-
-    ``value`` is that of ``OpenNumbers.model``, SI; couplings are relative to the geometric mean of
-    their diagonal entries, as bars are.
-    """
-
-    quantity: Quantity = Quantity("")
-    value: Number = None
-    total: IntervalRecord = IntervalRecord()
-    by_source: dict[str, IntervalRecord] = {}
-    by_input: dict[str, IntervalRecord] = {}
-    sampled: SampledRecord | None = None
-
-    @property
-    def shares(self) -> dict[str, float]:
-        """Share of every input in the sum of variances, the largest first; empty without any."""
-        parts = {path: (interval.deviation or 0.0) ** 2 for path, interval in self.by_input.items()}
-        total = sum(parts.values())
-        ordered = sorted(parts, key=lambda path: -parts[path])
-        return {path: parts[path] / total for path in ordered} if total else {}
-
-    @property
-    def width_shares(self) -> dict[str, float]:
-        """Share of every input in the sum of squared widths of the ranges by each, the largest first,
-        which need no deviations; empty without any.
-        """
-        parts = {
-            path: ((interval.high or 0.0) - (interval.low or 0.0)) ** 2
-            for path, interval in self.by_input.items()
-        }
-        total = sum(parts.values())
-        ordered = sorted(parts, key=lambda path: -parts[path])
-        return {path: parts[path] / total for path in ordered} if total else {}
-
-
-class OpenNumbers(Displayed, Part):
-    """Open inputs of a scene, and the numbers that they leave open.
-
-    ``lost`` names bearings that carry nothing somewhere in the ranges, ``refused`` says why points
-    could not be solved, ``left_out`` why nothing was worked out.
-    """
-
-    shown: ClassVar[str] = "show.open_words:budget"
-
-    model: str = ""
-    title: str = ""
-    inputs: list[InputRecord] = []
-    numbers: list[OpenRecord] = []
-    points: int = 0
-    samples: int = 0
-    seed: int | None = None
-    lost: list[str] = []
-    refused: list[str] = []
-    left_out: str = ""
-
-    def of(self, quantity: str) -> OpenRecord | None:
-        """Return the entry of a quantity."""
-        return next((number for number in self.numbers if number.quantity == quantity), None)
 
 
 #: version of this layout; it rises when a field is renamed or removed

@@ -36,7 +36,7 @@ def way_out(scene: Shaft) -> str:
         return NO_MODEL
     cones = (f.with_changes(model="pitch_cone") if f in cut else f for f in features)
     smeared = scene.with_changes(features=tuple(cones))
-    fit = [name for name in LADDER.fit(smeared) if not LADDER[name].unfit(smeared)]
+    fit = [name for name in LADDER.fit(smeared) if LADDER[name].can_model(smeared)]
     if not fit:
         return NO_MODEL
     return (

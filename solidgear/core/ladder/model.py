@@ -115,12 +115,22 @@ class Model:
         """
         return ""
 
+    def can_model(self, scene: Shaft) -> bool:
+        """Return True where it models all of a scene; :meth:`unfit` says why not, and imports every
+        feature there is for that.
+        """
+        return not self._misses_features(scene) and not self.unfit(scene)
+
+    def _misses_features(self, scene: Shaft) -> bool:
+        """Return True where it is made for features and the scene has none of them."""
+        return self.for_features and not any(f.sort in self.holds for f in scene.features)
+
     def unfit(self, scene: Shaft) -> str:
         """Return the reason why it does not model a scene; empty if it does."""
         from solidgear.core.scene.shaft import feature_labels
 
         features, with_smeared = features_of(scene), scene.features
-        if self.for_features and not any(f.sort in self.holds for f in with_smeared):
+        if self._misses_features(scene):
             kinds = sorted(kind for kind, cls in added("feature").items() if cls.sort in self.holds)
             return (
                 f"the {self.title} needs features, and the scene has none of: "
@@ -150,7 +160,7 @@ class Model:
         """
         from solidgear.core.scene.shaft import feature_labels  # start-up: as above
 
-        if self.for_features or not self.unfit(scene):
+        if self.for_features or self.can_model(scene):
             return ""
         return feature_labels(features_of(scene))
 
@@ -241,7 +251,7 @@ class Ladder:
 
     def holding(self, scene: Shaft) -> tuple[str, ...]:
         """Return the models with a body that model all of a scene."""
-        return tuple(n for n in self.bodies if not self[n].unfit(scene))
+        return tuple(n for n in self.bodies if self[n].can_model(scene))
 
     @property
     def judges(self) -> tuple[str, ...]:

@@ -130,7 +130,7 @@ class _Remedies:
     def other_models(self) -> Iterator[Remedy]:
         """Yield other models of the same scene."""
         for model in (LADDER[name] for name in ("sector", "corrected", "harmonic")):
-            if model is self.model or model.unfit(self.scene):
+            if model is self.model or not model.can_model(self.scene):
                 continue
             sized = self._sized(model, {})
             if sized is not None:

@@ -3,8 +3,8 @@
 SciPy copies every name of numpy into a namespace of its own when it is imported, and with them
 tools for Fortran, tests and types: a third of the time of its import.  Here they are executed at
 their first use.  pydantic searches the metadata of all packages for plugins, of which none is
-wanted.  What modules define lives as long as the process, and the collector would search it for
-garbage again and again.
+wanted; the library for it imports a parser of mail, to read them with.  What modules define lives
+as long as the process, and the collector would search it for garbage again and again.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from importlib.machinery import ModuleSpec, PathFinder
 from importlib.util import LazyLoader
 from types import ModuleType
 
-UNUSED = ("numpy.ctypeslib", "numpy.f2py", "numpy.testing")
+UNUSED = ("importlib.metadata._adapters", "numpy.ctypeslib", "numpy.f2py", "numpy.testing")
 PLUGINS = "PYDANTIC_DISABLE_PLUGINS"
 
 

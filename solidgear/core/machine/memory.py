@@ -62,14 +62,18 @@ def require(need_mb: float, unknowns: str, backend: str = "", free: float | None
 class Run:
     """Memory of one run."""
 
+    #: whether somebody reads these numbers; else a base is kept under a limit of the user alone
+    watched: bool = False
     #: memory of the process when it began; None before that, and where the system does not show it
     base_mb: float | None = None
-    #: the largest peak that was expected (see :func:`expect`)
+    #: the largest peak that was expected (see :func:`expect`), of a run that is watched
     expected_mb: float | None = None
 
 
 _run: ContextVar[Run | None] = ContextVar("the run that this is part of", default=None)
 
+#: environment variable with the limit of the user, MB
+LIMIT = "SOLIDGEAR_MEMORY_MB"
 #: needs below this are not refused, MB: a beam, or a coarse solid
 SMALL_MB = 25.0
 #: called with unknowns, and with memory in MB
@@ -102,7 +106,7 @@ def _limit_of_user() -> float | None:
     """Return the limit of the environment variable, MB; None without one. SolidgearError unless it is
     a number above zero.
     """
-    text = os.environ.get("SOLIDGEAR_MEMORY_MB", "").strip()
+    text = os.environ.get(LIMIT, "").strip()
     if not text:
         return None
     try:
@@ -110,18 +114,17 @@ def _limit_of_user() -> float | None:
     except ValueError:
         allowed = 0.0
     if not 0 < allowed < float("inf"):
-        raise SolidgearError(
-            f"SOLIDGEAR_MEMORY_MB = {text!r}: must be a number of megabytes above zero"
-        )
+        raise SolidgearError(f"{LIMIT} = {text!r}: must be a number of megabytes above zero")
     return allowed
 
 
 @contextmanager
-def one_run() -> Iterator[Run]:
+def one_run(watched: bool = False) -> Iterator[Run]:
     """Begin a run, in which ``SOLIDGEAR_MEMORY_MB`` limits the memory taken in all, not by each
-    body; a run within a run is part of it.
+    body; a run within a run is part of it, and `watched` if one of them is.
     """
     with one_command() as run:
+        run.watched |= watched
         begin()
         yield run
 
@@ -144,7 +147,7 @@ def fresh_run() -> Iterator[None]:
     """Count memory from zero within it: for models in place of the one that has taken memory so
     far.
     """
-    token = _run.set(Run(resident_mb()))
+    token = _run.set(Run(base_mb=resident_mb()))
     try:
         yield
     finally:
@@ -154,7 +157,9 @@ def fresh_run() -> Iterator[None]:
 def begin() -> None:
     """Count the memory of the run from here on, if it has not begun."""
     run = _run.get()
-    if run is not None and run.base_mb is None:
+    if run is None or run.base_mb is not None:
+        return
+    if run.watched or os.environ.get(LIMIT):
         run.base_mb = resident_mb()
 
 
@@ -176,9 +181,11 @@ def announce(unknowns: int, more_mb: float) -> None:
 
 
 def expect(more_mb: float) -> None:
-    """Note that so much memory (MB) will be taken beyond the resident memory."""
-    run, resident = _run.get(), resident_mb()
-    if run is not None and resident is not None:
+    """Note that so much memory (MB) will be taken beyond the resident memory, in a run that is
+    watched.
+    """
+    run = _run.get()
+    if run is not None and run.watched and (resident := resident_mb()) is not None:
         run.expected_mb = max(run.expected_mb or 0.0, resident + more_mb)
 
 

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import functools
-import operator
-from collections.abc import Iterator, Sequence
-from typing import TYPE_CHECKING
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+from typing import Annotated, Any
+
+from pydantic import BeforeValidator, SerializeAsAny
 
 from solidgear.core.errors import SceneError
 from solidgear.core.registry import added
@@ -14,12 +14,30 @@ from solidgear.core.scene.parts import Segment
 
 #: a shaft carries no more of them
 MOST_FEATURES = 20
-#: by the kind that a file calls them
-FEATURES: dict[str, type[OnSegment]] = added("feature")
-if TYPE_CHECKING:
-    Feature = OnSegment
-else:
-    Feature = functools.reduce(operator.or_, FEATURES.values(), OnSegment)
+
+
+def _made(value: Any) -> Any:
+    """Return a feature made from its table, as its kind says; anything else as it is."""
+    if not isinstance(value, Mapping) or "kind" not in value:
+        return value
+    kind = kinds_of_features().get(value["kind"])
+    if kind is None:
+        raise SceneError(unknown_kind(kinds_of_features()), path=("kind",))
+    return kind(**value)
+
+
+def kinds_of_features() -> dict[str, type[OnSegment]]:
+    """Return features by the kind that a file calls them; a shaft without any imports none."""
+    return added("feature")
+
+
+def unknown_kind(kinds: Iterable[str]) -> str:
+    """Return the reason why a feature of another kind is refused."""
+    return f"unknown kind; write one of {', '.join(map(repr, kinds))}"
+
+
+#: one of several models, which its kind tells apart
+Feature = Annotated[SerializeAsAny[OnSegment], BeforeValidator(_made)]
 
 
 def feature_problems(
@@ -40,7 +58,7 @@ def feature_problems(
         for problem in feature.problems(segments):
             each_fits = False
             yield problem.located(None, path=("features", i, *problem.path))
-    if each_fits:
+    if features and each_fits:
         for meeting_problems in added("rule of features").values():
             for i, problem in meeting_problems(segments, features):
                 yield problem.located(None, path=("features", i, *problem.path))

@@ -20,7 +20,8 @@ from solidgear.core.scene.acting import torque_problems
 from solidgear.core.scene.ask import Ask
 from solidgear.core.scene.blends import BLENDS
 from solidgear.core.scene.ends import seat_masses
-from solidgear.core.scene.feature_rules import FEATURES
+from solidgear.core.scene.feature import OnSegment
+from solidgear.core.scene.feature_rules import kinds_of_features, unknown_kind
 from solidgear.core.scene.gravity import Direction
 from solidgear.core.scene.housing import Housing, read_housing
 from solidgear.core.scene.limits import MOST_BEARINGS, MOST_MASSES, MOST_SEGMENTS
@@ -65,8 +66,12 @@ Table = dict[str, Any]
 MOST = {"segment": MOST_SEGMENTS, "bearing": MOST_BEARINGS, "mass": MOST_MASSES}
 
 
-#: a table of a cut, teeth, a fillet or a chamfer
-Feature = Annotated[Table, Kinds({**FEATURES, **BLENDS}, given=("name",))]
+def _kinds() -> dict[str, type[Placed]]:
+    """Return what a table of features may describe: a cut, teeth, a fillet or a chamfer."""
+    return {**kinds_of_features(), **BLENDS}
+
+
+Feature = Annotated[Table, Kinds(_kinds, given=("name",))]
 #: a range of an entry
 OpenRange = Annotated[str, Word(pattern=r".*(±|\+/-|\+-|:).*")]
 
@@ -291,7 +296,7 @@ class _Reading:
             "ports": self._main_first(ports),
             "masses": masses,
             "loads": loads,
-            "features": [row for row in features if row.kind in FEATURES.values()],
+            "features": [row for row in features if issubclass(row.kind, OnSegment)],
             "blends": [row for row in features if row.kind in BLENDS.values()],
         }
         if self.segments:
@@ -431,13 +436,13 @@ class _Reading:
 
     def _feature(self, index: int, table: Table) -> list[_Row]:
         """Read a feature, which may have no name; no row for an unknown kind."""
-        path, kinds = ("feature", index), {**FEATURES, **BLENDS}
+        path, kinds = ("feature", index), _kinds()
         kind = table.get("kind")
         if isinstance(kind, str) and kind in kinds:
             return [
                 self._row(kinds[kind], path, table, name=f"{kind.replace('_', ' ')} {index + 1}")
             ]
-        reason = f"unknown kind; write one of {', '.join(map(repr, kinds))}"
+        reason = unknown_kind(kinds)
         if "kind" not in table:
             reason = (
                 'this key is missing; it gives the sort of the feature, such as kind = "keyway"'

@@ -10,7 +10,7 @@ from pydantic.fields import FieldInfo
 
 from solidgear.core.registry import added
 from solidgear.core.scene.blends import BLENDS
-from solidgear.core.scene.feature_rules import FEATURES
+from solidgear.core.scene.feature_rules import kinds_of_features
 from solidgear.core.scene.file import SceneFile, ScenePartFile
 from solidgear.core.scene.paths import Keys
 from solidgear.core.scene.typed import Holds, Model
@@ -55,7 +55,7 @@ def _kinds(names: tuple[str, ...]) -> tuple[Any, ...]:
         # a name that is no key of a table names one of several
         kinds = [kind for field in fields for kind in _tables(field)] or kinds
         if name == "feature":
-            kinds = [*FEATURES.values(), *BLENDS.values()]
+            kinds = [*kinds_of_features().values(), *BLENDS.values()]
     return tuple(field.annotation for field in fields)
 
 

@@ -37,7 +37,7 @@ class Word:
 class Kinds:
     """Mark of a table that is one of several models, by its key ``kind``."""
 
-    tables: Mapping[str, Any]
+    tables: Callable[[], Mapping[str, Any]]  #: called when a schema is made
     #: keys that the reader gives where a file does not
     given: tuple[str, ...] = ()
 

@@ -98,7 +98,7 @@ class Nodes:
 
 def _shapes(models: Sequence[type[Model]]) -> Kinds:
     """Return models by their kinds."""
-    return Kinds({get_args(m.model_fields["kind"].annotation)[0]: m for m in models})
+    return Kinds(lambda: {get_args(m.model_fields["kind"].annotation)[0]: m for m in models})
 
 
 def table(properties: Mapping[str, Node], required: Sequence[str] = ()) -> Node:

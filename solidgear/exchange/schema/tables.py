@@ -28,7 +28,7 @@ def of_model(kind: type[Model]) -> Node:
 
 def of_kinds(kinds: Kinds) -> Node:
     """Return the schema of a table that is one of several kinds."""
-    nodes = {name: of_model(kind) for name, kind in kinds.tables.items()}
+    nodes = {name: of_model(kind) for name, kind in kinds.tables().items()}
     properties: dict[str, Node] = {
         "kind": {"type": "string", "enum": [*nodes], "description": "Kind of the table."}
     }

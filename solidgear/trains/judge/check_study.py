@@ -74,6 +74,6 @@ def check(
         return check_train(Reduced().assembly(source, solves_teeth=False))
     scene = load(under_case(source, case))
     # a model of revolution is looked at on the plain part, and the check says so
-    part = scene.plain if LADDER[model].unfit(scene) else scene
+    part = scene if LADDER[model].can_model(scene) else scene.plain
     chosen = dict(HARMONIC) if usual else LADDER[model].checked(dict(options or {}))
     return check_scene(scene, build(part, model, **chosen))

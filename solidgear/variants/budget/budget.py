@@ -52,8 +52,8 @@ from solidgear.core import (
 )
 from solidgear.core.body import Supports
 from solidgear.core.judge.correlation import FOREIGN
+from solidgear.core.judge.open_numbers import InputRecord, IntervalRecord, OpenRecord, SampledRecord
 from solidgear.core.judge.quantities import in_order, measure
-from solidgear.core.judge.record import InputRecord, IntervalRecord, OpenRecord, SampledRecord
 from solidgear.core.loading import SHAFT
 from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.solve.neighbours import best_assignment

@@ -18,7 +18,8 @@ from solidgear.bearings.inside import Inside
 from solidgear.bearings.rating import ratings
 from solidgear.bearings.ribs import estimated_stiffness
 from solidgear.core import OpenNumbers, Quantity, Scene, SolidgearError
-from solidgear.core.judge.record import OpenRecord, Part
+from solidgear.core.judge.open_numbers import OpenRecord
+from solidgear.core.judge.part import Part
 from solidgear.show.open_words import SHOWN
 
 
