@@ -33,17 +33,17 @@ def completeness(evidence: dict, model: str) -> str:
 
 
 def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str = "") -> list[str]:
-    """Warn where the number `n` of elastic shapes asked for, twins counted twice, ends a list below
-    the frequency asked for: one sentence, or none; `option` names an option that can be raised,
+    """Warn where the number `n` of elastic shapes, twins counted twice, that was asked for, or that a
+    comparison needs at least, ends a list below the frequency asked for: one sentence, or none; `option` names an option that can be raised,
     beside the number in the scene.
     """
     elastic = [m for m in modes if not m.name.rigid]
     if not asked_hz or not elastic or sum(m.multiplicity for m in elastic) < n:
         return []  # all that there are up to it
     return [
-        f"the list ends with the {n} elastic shapes asked for, at {elastic[-1].frequency_hz:.4g} "
-        f"Hz, below the {asked_hz:g} Hz asked for; raise "
-        f"{option + ', or ' if option else ''}modes of its ask"
+        f"the list ends with {n} elastic shapes, at {elastic[-1].frequency_hz:.4g} Hz, below the "
+        f"{asked_hz:g} Hz asked for; raise {option + ', or ' if option else ''}modes of its ask, "
+        f"above {n}"
     ]
 
 
