@@ -448,7 +448,7 @@ def _following(body: Body, index: int) -> Callable[[Part, np.ndarray], np.ndarra
     order more without any load, from one kind of these, of functions that were summed up (s, k).
     """
     block, factor = body.blocks[index], factors(body)[index]
-    back = _enrichment(body, index).coupling.T.tocsr()
+    back = _enrichment(body, index).coupling.T
     heavy = block.mass @ block.rigid
     gram = block.rigid.T @ heavy
 
