@@ -17,15 +17,23 @@ def is_room(name):
 
 
 @functools.cache
-def imported(path):
-    """Dotted names that a file imports, wherever in it."""
-    names = set()
+def named(path):
+    """Dotted names that a file imports, wherever in it, and attributes that it takes of the package."""
+    names, attributes = set(), set()
     for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
         if isinstance(node, ast.Import):
             names |= {alias.name for alias in node.names}
         elif isinstance(node, ast.ImportFrom) and node.module:
             names |= {node.module, *(f"{node.module}.{alias.name}" for alias in node.names)}
-    return names
+        elif isinstance(node, ast.Attribute) and isinstance(node.value, ast.Name):
+            if node.value.id in ("sg", "solidgear"):
+                attributes.add(node.attr)
+    return names, attributes
+
+
+def imported(path):
+    """Dotted names that a file imports."""
+    return named(path)[0]
 
 
 @functools.cache
@@ -39,13 +47,8 @@ def exported():
 @functools.cache
 def taken_from_the_door(path):
     """Modules of the exported names that a file writes, such as `sg.correlate`."""
-    nodes = ast.walk(ast.parse(path.read_text(encoding="utf-8")))
-    attributes = {
-        node.attr
-        for node in nodes
-        if isinstance(node, ast.Attribute) and ast.unparse(node.value) in ("sg", "solidgear")
-    }
-    names = {name.removeprefix("solidgear.") for name in imported(path)}
+    names, attributes = named(path)
+    names = {name.removeprefix("solidgear.") for name in names}
     return {module for name, module in exported().items() if name in attributes | names}
 
 

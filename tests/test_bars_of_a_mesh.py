@@ -22,10 +22,11 @@ port = { name = "gear", at = "gear.middle", attach_to = "gear" }
 """
 SCENES = [
     ("cylinder_free", ("refinement=0.5",)),
-    pytest.param("cylinder_free", ("element=tet10", "refinement=0.5"), marks=pytest.mark.long),
+    ("cylinder_free", ("element=tet10", "refinement=0.5")),
 ]
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name, settings", SCENES)
 def test_bars_of_a_mesh_that_is_set_hold_what_the_harmonic_solid_says(run, name, settings):
     path = GEOMETRY / f"{name}.toml"

@@ -54,7 +54,8 @@ def shaft(spline, tie="average"):
 PARTS = {
     "straight": shaft(STRAIGHT),
     "spiral": shaft(SPIRAL),
-    "rigid": shaft(STRAIGHT, "rigid"),
+    # ports feel waves of one period around at most, which four sectors have as five do
+    "rigid": shaft(STRAIGHT.with_changes(count=4, dedendum=0.4), "rigid"),
 }
 
 

@@ -3,6 +3,7 @@ shaft under load, and what is refused.
 """
 
 import tomllib
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -126,6 +127,7 @@ def test_materials_are_chosen_by_name():
     assert light / steel == pytest.approx(2700 / 7850)
 
 
+@pytest.mark.long
 def test_a_search_over_lists_finds_the_best_row_of_a_sweep():
     lists = [f"{DESIGNATION}=NU 206,NU 207,NU 307", "material=42CrMo4,EN-GJS-700"]
     keep = "A.static_safety > 16"
@@ -175,7 +177,9 @@ def test_the_command_draws_a_front(tmp_path):
 )
 def test_a_search_is_no_worse_than_a_fine_grid(name):
     (problem,) = (problem for problem in PROBLEMS if problem.name == name)
-    row = beside(problem)
+    # a list of three is searched as one of five
+    few = {path: words[:3] for path, words in problem.lists.items()}
+    row = beside(replace(problem, lists=few))
     assert row["behind_percent"] < 0.1
     assert row["designs"] < row["grid_designs"] + 2
 

@@ -368,6 +368,7 @@ def test_help_lists_the_commands(run):
         assert page.code == 0 and "scene" in page.out.lower()
 
 
+@pytest.mark.long
 def test_backends_give_the_same_stiffness(run, monkeypatch):
     found = {}
     for backend in ("superlu", "pardiso"):

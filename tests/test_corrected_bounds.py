@@ -204,6 +204,7 @@ def test_modes_of_halves_that_a_bearing_couples_have_the_bars_of_halves_that_sta
     assert of_joined[name].width == pytest.approx(bars.error_bars[name].width, rel=0.05)
 
 
+@pytest.mark.long
 def test_the_harmonic_part_is_in_both_ends(scene, body, answer):
     bounds = corrected_bounds(scene, body, answer.supports, statics=True)
     plain = harmonic_bounds(scene.plain, body.cache.find(Origin).plain, statics=True).more

@@ -122,9 +122,9 @@ def mirrored_whole(made: FeaturedMesh) -> FeaturedMesh:
 def test_two_halves_equal_the_whole(angle):
     """The same elements mirrored and joined: compliance and frequencies to rounding."""
     scene = shaft(KEY.with_changes(angle=angle))
-    wanted, made = mesh_of(scene, 0.3)
-    halves = featured_body(scene, wanted, made, 0.3)
-    whole = featured_body(scene, wanted, mirrored_whole(made), 0.3)
+    wanted, made = mesh_of(scene, 0.2)
+    halves = featured_body(scene, wanted, made, 0.2)
+    whole = featured_body(scene, wanted, mirrored_whole(made), 0.2)
     assert [b.components for b in halves.blocks] == (
         [(1, 2, 3), (0, 4, 5)] if angle == 0 else [(0, 1, 5), (2, 3, 4)]
     )

@@ -72,7 +72,7 @@ def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
 def test_a_pair_has_the_subharmonic_that_a_motion_in_time_keeps_and_nothing_else():
     own = pair(0.05)
     branch = follow(own, 0.3, 2.5, step=0.02)
-    looked = search(branch, np.geomspace(0.35, 2.4, 10))
+    looked = search(branch, np.geomspace(0.35, 2.4, 6))
     (one,) = looked.branches
     assert one.periods == 2 and one.end == "closed" and not looked.lost
     low, high = 2 * one.branch.omega.min(), 2 * one.branch.omega.max()

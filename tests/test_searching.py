@@ -164,6 +164,7 @@ def test_a_front_holds_no_beaten_design_and_lies_on_the_known_curve():
         assert a.goals[0].value > b.goals[0].value or a.goals[1].value > b.goals[1].value
 
 
+@pytest.mark.long
 def test_the_best_seat_of_a_shaft_is_beside_the_other_disc():
     """Going up from the file ends beside the right disc, at 510 Hz; beside the left one there is more."""
     beam = {"model": "timoshenko"}

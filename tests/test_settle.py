@@ -236,6 +236,7 @@ def test_refused_in_one_sentence(run, tmp_path, kind):
     assert list(tmp_path.iterdir()) == []
 
 
+@pytest.mark.long
 def test_a_named_3d_solid_is_as_coarse_as_the_tolerance_allows(run, scene):
     code, out, _ = run("modes", SCENE, "-f", "solid", "-n", "4", "--tol", "0.03", "--json")
     coarse = json.loads(out)

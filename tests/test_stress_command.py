@@ -207,6 +207,7 @@ def test_a_spring_at_the_teeth_leaves_no_torque_and_that_is_told():
     assert not any(one.found.forces.right[:, 4].any() for one in found.shafts)
 
 
+@pytest.mark.long
 def test_weight_is_spread_along_the_shafts_of_a_train():
     point = OperatingPoint(torque=115.0, weight="-z")
     found = stress_at_rest(Assembly(sg.load_train(GEARBOX, point)), point, "timoshenko")

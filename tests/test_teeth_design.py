@@ -287,6 +287,7 @@ def test_one_at_a_time_over_every_point_begins_at_the_first():
 
 
 # ------------------------------------------------------------------------------------- verdicts
+@pytest.mark.long
 def test_a_verdict_says_where_the_mesh_stiffness_comes_from():
     """That of the train, and at the other point that of a train settled there."""
     train = sg.load_train(GEARBOX)

@@ -108,11 +108,11 @@ def test_plane_slices_of_helical_teeth_are_stiffer_than_teeth_in_3d(carried):
 def test_error_bars_hold_against_finer_slices_and_cells(carried):
     """Numbers by four times the slices and twice the cells lie within the bars."""
     mesh = carried.train.pairs[0]
-    model = TeethModel(slices=16, positions=16)
+    model = TeethModel(slices=8, positions=16)
     contact = mesh_contact(carried, mesh, model)
     bars, numbers = error_bars(carried, mesh, model, contact), numbers_of(contact)
     teeth = teeth_of(mesh, False)
-    finer = toothed(mesh, teeth, replace(model, slices=64))
+    finer = toothed(mesh, teeth, replace(model, slices=32))
     finer = replace(
         finer,
         compliances=tuple(
@@ -123,7 +123,7 @@ def test_error_bars_hold_against_finer_slices_and_cells(carried):
     place = carried.place(mesh, teeth)
     supports = carried.supports(place, Frame.of(place, teeth))
     base = teeth.wheels.first.base
-    cycle = mesh_cycle(finer, contact.cycle.torque, base, 64, supports, 16)
+    cycle = mesh_cycle(finer, contact.cycle.torque, base, 32, supports, 16)
     found = numbers_of(replace(contact, pair=finer, cycle=cycle))
     for name in ("tangent", "secant", "peak_to_peak", "order 1", "order 2"):
         assert abs(found[name] - numbers[name]) <= bars[name], name

@@ -107,6 +107,7 @@ def test_flanks_are_curved_along_the_involute_and_the_helix():
     assert np.abs(angle - HELICAL.half_angle(np.hypot(x, y))).max() < 1e-12
 
 
+@pytest.mark.long
 def test_teeth_of_the_other_hand_are_mirrored():
     usual, turned_back = coarse(HELICAL), coarse(HELICAL, hand=-1)
     slices, radii = usual.slices, len(usual.radii)

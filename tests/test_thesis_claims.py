@@ -36,7 +36,11 @@ VERDICTS = {
 
 @pytest.fixture(scope="module")
 def judged():
-    return {name: claim() for name, claim in FOUND.items()}
+    """Claims by mesh cycles of half the places that the page takes, which every verdict outlives."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(contact, "POSITIONS", contact.POSITIONS // 2)
+        yield {name: claim() for name, claim in FOUND.items()}
+    contact.contact.cache_clear()
 
 
 def test_every_claim_has_its_verdict(judged):
