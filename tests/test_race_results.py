@@ -210,6 +210,6 @@ def test_the_mesh_that_is_known_to_do_is_the_coarsest_of_the_automatic_choice(mo
     reference_of_less = reference()
     reference_of_less.target = 2e-4
     monkeypatch.setattr(
-        peers.Known, "measured", lambda error, scene, model, options: Mesh(options + 1.5e-3)
+        peers.Known, "measured", lambda error, scene, model, options: Mesh(options + 1.52e-3)
     )
-    assert peers.of_answers(Heat(), reference_of_less, None).options == pytest.approx(1.9e-3)
+    assert peers.of_answers(Heat(), reference_of_less, None).options == pytest.approx(1.92e-3)
