@@ -52,12 +52,15 @@ def kept(tmp_path, monkeypatch):
 
 
 def test_numbers_of_a_command_are_named_by_what_they_belong_to():
-    found = dict(numbers_in(PRINTED))
-    assert found["/values/C_zz/value"] == Number(2.0, 0.01)
+    found = dict(numbers_in(PRINTED, in_units=False))
+    assert found["/values/C_zz/value"] == Number(2.0, 0.02)
     assert found["/modes/bending 1/frequency_hz"] == Number(50.0)
     assert found["/models/harmonic/compliance/5"] == Number(2.0)
     # neither times nor evidence
     assert len(found) == 8
+    # a bar of 0.01 of the unit of a number of 2
+    of_deflections = dict(numbers_in(PRINTED, in_units=True))
+    assert of_deflections["/values/C_zz/value"] == Number(2.0, 0.01)
 
 
 def raced(monkeypatch, tmp_path, new):

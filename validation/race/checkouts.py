@@ -48,13 +48,15 @@ TRAINS = (
 OF_TRAINS = ("system-modes", "response", "deflect")
 #: torque of a train whose file has no operating point
 TORQUE = "100 N*m"
+#: commands whose error bars are in the unit of their numbers
+IN_UNITS = ("deflect",)
 #: keys of numbers that are compared, and keys that name what they belong to
 VALUES, NAMES = ("value", "frequency_hz", "force"), ("name", "quantity", "mode")
 
 
 @dataclass(frozen=True)
 class Number:
-    """A number that a command prints, and its relative error bar, if it has one."""
+    """A number that a command prints, and its error bar in the same unit, if it has one."""
 
     value: float
     bar: float | None = None
@@ -116,7 +118,7 @@ def once(tree: Path, words: list[str], limit: float) -> Sample:
         text = kept.read_text() if kept.exists() else done.out
     try:
         # notices of progress stand before
-        numbers = dict(numbers_in(json.loads(text[text.index("{") :])))
+        numbers = dict(numbers_in(json.loads(text[text.index("{") :]), words[0] in IN_UNITS))
     except ValueError:
         raise PeerError(f"{words[0]} printed no JSON: {last_words(text)}") from None
     return Sample({"all": done.wall}, done.cpu, numbers, {"peak_MB": done.tree_mb})
@@ -128,24 +130,27 @@ def commit(tree: Path) -> str:
     return subprocess.run(words, cwd=tree, capture_output=True, text=True).stdout.strip()
 
 
-def numbers_in(data: Any, path: str = "") -> Iterator[tuple[str, Number]]:
-    """Yield the numbers of what a command prints, by where they stand; of a 6x6 the diagonal."""
+def numbers_in(data: Any, in_units: bool, path: str = "") -> Iterator[tuple[str, Number]]:
+    """Yield the numbers of what a command prints, by where they stand; of a 6x6 the diagonal. Bars
+    are printed in units of the number, or relative to it, those of couplings to another size.
+    """
     if isinstance(data, list):
         for k, item in enumerate(data):
             label = next((str(item[n]) for n in NAMES if n in item), str(k)) if _is_row(item) else k
-            yield from numbers_in(item, f"{path}/{label}")
+            yield from numbers_in(item, in_units, f"{path}/{label}")
         return
     if not isinstance(data, dict):
         return
     for key, item in data.items():
         if key in VALUES and isinstance(item, float):
-            yield f"{path}/{key}", Number(item, data.get("bar"))
+            bar, size = data.get("bar"), 1.0 if in_units else data.get("size", abs(item))
+            yield f"{path}/{key}", Number(item, None if bar is None else bar * size)
         elif key == "compliance" and np.shape(item) == (6, 6):
             for k in range(6):
                 if item[k][k] is not None:
                     yield f"{path}/{key}/{k}", Number(float(item[k][k]))
         else:
-            yield from numbers_in(item, f"{path}/{key}")
+            yield from numbers_in(item, in_units, f"{path}/{key}")
 
 
 def _is_row(item: Any) -> bool:
@@ -160,7 +165,7 @@ def differences(before: Lane, answer: dict[str, Number]) -> Iterator[tuple[float
         new = answer.get(name)
         if new is None or not old.value:
             continue
-        bars = None if old.bar is None or new.bar is None else old.bar + new.bar
+        bars = None if old.bar is None or new.bar is None else (old.bar + new.bar) / abs(old.value)
         yield abs(new.value / old.value - 1), bars
 
 
