@@ -31,6 +31,7 @@ from solidgear.bearings.ball import BallRow
 from solidgear.bearings.hertz import POINT_POWER, Point
 from solidgear.bearings.row import FELT, Contacts, six
 from solidgear.core import SolidgearError
+from solidgear.core.body.cache import LastTwo
 
 #: kg/m^3, bearing steel
 DENSITY = 7800.0
@@ -45,9 +46,9 @@ class SpinningBalls:
     row: BallRow
     speed: float  #: rad/s
     density: float = DENSITY  #: of the balls, kg/m^3
-    #: the last motion and where its balls settled: load and tangent of one motion are asked in turn
-    _last: dict[tuple, tuple[np.ndarray, np.ndarray]] = field(
-        default_factory=dict, init=False, repr=False, compare=False
+    #: where the balls settled, by motion: load and tangent of one motion are asked in turn
+    _last: LastTwo[tuple[np.ndarray, np.ndarray]] = field(
+        default_factory=LastTwo, init=False, repr=False, compare=False
     )
 
     @property
@@ -92,6 +93,11 @@ class SpinningBalls:
         angle_by_s = np.stack([-sin, c], axis=-1) / length[..., None]
         return force, by_angle[..., :, None] * angle_by_s[..., None, :]
 
+    def _forces(self, s: np.ndarray, o: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the forces (..., n, 2) along both contacts."""
+        (inner, free_i), (outer, free_o) = self._grooves()
+        return _force(s - o, inner.constant, free_i), _force(o, outer.constant, free_o)
+
     def _contacts(self, s: np.ndarray, o: np.ndarray, nearly: float = 0.0):
         """Return the forces (..., n, 2) along both contacts, and their stiffnesses, `nearly` metres
         further.
@@ -105,11 +111,7 @@ class SpinningBalls:
         """Return vectors s and o (..., n, 2) at which the balls are in equilibrium."""
         felt_motion = np.ascontiguousarray(np.asarray(motion, float)[..., FELT])
         key = felt_motion.shape, felt_motion.tobytes()
-        if key not in self._last:
-            settled = self._settle(felt_motion)
-            self._last.clear()
-            self._last[key] = settled
-        return self._last[key]
+        return self._last.on(key, lambda: self._settle(felt_motion))
 
     def _settle(self, felt_motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the equilibrium of the balls, from a static approach on."""
@@ -144,11 +146,8 @@ class SpinningBalls:
         """
         first = (miss * step).sum(axis=-1)
         way = np.ones_like(first)
-        (inner, free_i), (outer, free_o) = self._grooves()
         for _ in range(30):
-            moved = _moved(o, way[..., None] * step)
-            q_i = _force(s - moved, inner.constant, free_i)
-            q_o = _force(moved, outer.constant, free_o)
+            q_i, q_o = self._forces(s, _moved(o, way[..., None] * step))
             too_far = ((q_i - q_o + inertia) * step).sum(axis=-1) < -0.5 * first
             if not too_far.any():
                 break
@@ -163,7 +162,7 @@ class SpinningBalls:
 
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Return the load (..., 6) that holds the inner ring at motions (..., 6), N and N m."""
-        press = self._contacts(*self._settled(motion))[0]
+        press, _ = self._forces(*self._settled(motion))
         radial, axial = self.row._felt
         return six(press[..., 0] @ radial + press[..., 1] @ axial)
 
@@ -184,7 +183,7 @@ class SpinningBalls:
         s, o = self._settled(motion)
         i = s - o
         (inner, _), (outer, _) = self._grooves()
-        q_i, q_o, _, _ = self._contacts(s, o)
+        q_i, q_o = self._forces(s, o)
         load, outer_load = np.linalg.norm(q_i, axis=-1), np.linalg.norm(q_o, axis=-1)
         angle = np.where(load > 0, np.arctan2(i[..., 1], i[..., 0]), np.nan)
         return Contacts(
