@@ -8,6 +8,8 @@ asked of all that it has started as well.
 
 from __future__ import annotations
 
+import functools
+import os
 import time
 from collections.abc import Callable
 from typing import TYPE_CHECKING
@@ -27,9 +29,17 @@ def resident_mb() -> float | None:
     import psutil  # start-up: a hundredth of a second, for programs that build nothing
 
     try:
-        return psutil.Process().memory_info().rss / MB
+        return _process(os.getpid()).memory_info().rss / MB
     except (psutil.Error, OSError):
         return None
+
+
+@functools.lru_cache(maxsize=1)
+def _process(pid: int) -> Process:
+    """Return a process, which is asked many times a second."""
+    import psutil  # start-up: as in `resident_mb`
+
+    return psutil.Process(pid)
 
 
 def give_back() -> None:
