@@ -104,8 +104,29 @@ def test_a_comparison_hands_its_reference_to_the_solid(monkeypatch):
 @pytest.mark.long
 def test_a_mesh_that_statics_rule_out_is_passed_over():
     solid = study(shaft(tolerance=0.01), "solid", evidence=False, reference=reference())
-    assert len(solid.levels) == 1 and solid.options["layers"] == 1
+    first, last = solid.levels
+    assert BENDING not in first.quantities and solid.options["layers"] == 1
+    assert last.dofs > first.dofs and BENDING in last.quantities
     assert solid.worst_bar() <= 0.01 and not solid.check
+
+
+def test_a_first_harmonic_mesh_whose_statics_are_too_coarse_is_solved_for_no_modes(monkeypatch):
+    scene = shaft(tolerance=0.01)
+    asked = []
+
+    def interrupt(text):
+        asked.append(text)
+        if sum(one.startswith("harmonic: order") for one in asked) == 2:
+            raise KeyboardInterrupt
+
+    harmonic = study(scene, "harmonic", evidence=False)
+    first, last = harmonic.levels
+    assert list(first.quantities) == [C_ZZ] and list(last.quantities) == [C_ZZ, BENDING]
+    assert harmonic.worst_bar() <= 0.01 / LADDER["harmonic"].share
+    with pytest.raises(
+        KeyboardInterrupt, match=r"order 3, was solved for statics alone, in which C_"
+    ):
+        study(scene, "harmonic", evidence=False, progress=interrupt)
 
 
 def test_an_interrupt_after_a_mesh_that_was_passed_over_leaves_what_that_mesh_showed(monkeypatch):

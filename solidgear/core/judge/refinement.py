@@ -121,6 +121,12 @@ class Refinement:
         return self.scene.body is not None and self.scene.body.one_mesh
 
     @property
+    def may_go_on(self) -> bool:
+        """Whether a finer mesh can follow the first."""
+        several = self.model.follows or len(self.plan.levels) > 1
+        return several and not self.plan.fixed and self.most != 1
+
+    @property
     def body(self) -> Body | None:
         """The last body that was solved."""
         return None if self.last is None else self.last.body

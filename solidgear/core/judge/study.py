@@ -13,14 +13,14 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.core.body import as_supports
+from solidgear.core.body import Body, as_supports
 from solidgear.core.bounds.harmonic import Later
 from solidgear.core.errors import NoBounds, SolidgearError
 from solidgear.core.judge.bounded import Bounded, bounded
 from solidgear.core.judge.hidden import complete_list, first_above
 from solidgear.core.judge.quantities import judged, usual
 from solidgear.core.judge.record import LevelRecord
-from solidgear.core.judge.reference_check import Distances, ReferenceCheck
+from solidgear.core.judge.reference_check import ReferenceCheck
 from solidgear.core.judge.refinement import Progress, Refinement, Solved, refine
 from solidgear.core.judge.solution import Solution
 from solidgear.core.judge.solving import Answer, Numbers, numbers, with_all_solved
@@ -132,7 +132,7 @@ class TiedSolver:
         self.refinement, self.progress = refinement, progress
         self.count_modes, self.keep = count_modes, keep
         self.check = check  #: of a reference, which is all that this solid is for
-        #: options of the first mesh, where its statics alone are beyond the tolerance of a check
+        #: options of the first mesh, where its statics alone show that a finer one follows
         self.passed_over: Mapping[str, Any] | None = None
         self.solution: Solution | None = None  #: of the last mesh
         self.meter = Meter()
@@ -178,10 +178,10 @@ class TiedSolver:
             give_back()
         scene, name = refinement.scene, refinement.model.name
         tied = tied_statics(scene, name, options, self.meter)
-        if distances := self._beyond_check(tied):
+        if solved := self._too_coarse(tied):
             self.passed_over = options
-            tied.body.cache.clear()
-            return Solved(tied.body, numbers(tied.statics, None), tied.body.size, None, distances)
+            self.meshes.append(_level_of(solved.body, solved.numbers.quantities))
+            return solved
         ties = solved_ties(scene, tied, name, options, self.meter, spare=True)
         _book_as_evidence(self.meter, before)
         answer = ties[SCENE]
@@ -190,7 +190,7 @@ class TiedSolver:
         give_back()
         with self.meter.stage("band"):
             score = self._judge_mesh(solution)
-        self.meshes.append(_level_of(answer))
+        self.meshes.append(_level_of(answer.body, answer.quantities))
         self.solution = solution
         self.keep(solution)
         bars = refinement.error_bars
@@ -204,24 +204,52 @@ class TiedSolver:
             {} if self.check is None else self.check.distances(solution),
         )
 
-    def _beyond_check(self, tied: Tied) -> Distances:
-        """Return the distances of a check by which a first mesh, of several, cannot be the last."""
-        several = len(self.refinement.plan.levels) > 1 and self.refinement.most != 1
-        if self.check is None or self.passed_over is not None or self.solution or not several:
-            return {}
-        return self.check.distances_beyond(tied.statics.values())
+    def _too_coarse(self, tied: Tied) -> Solved | None:
+        """Return what statics alone tell of a first mesh, where they show that a finer one follows: its
+        modes need not be solved.
+        """
+        refinement, check = self.refinement, self.check
+        first = self.passed_over is None and self.solution is None
+        if not first or not refinement.may_go_on:
+            return None
+        values = numbers(tied.statics, None)
+        if check is not None:
+            distances = check.distances_beyond(tied.statics.values())
+            if not distances:
+                return None
+            tied.body.cache.clear()
+            give_back()
+            return Solved(tied.body, values, tied.body.size, None, distances)
+        if not refinement.model.follows:
+            return None
+        with self.meter.stage("band"):
+            score = self._score_of_statics(tied, values)
+        return None if score is None else Solved(tied.body, values, tied.body.size, score)
 
     def _left_at_statics(self) -> str:
         """Return in words what an interrupt leaves of a solid whose first mesh was passed over."""
         refinement, check = self.refinement, self.check
-        assert refinement.last is not None and check is not None
-        distances = refinement.last.distances
-        name = max(distances, key=distances.__getitem__)
+        doubts = {q: refinement.doubt(q) for q in refinement.unmet()}
+        name = max(doubts, key=doubts.__getitem__)
+        from_what = "off" if check is None else f"from the {LADDER[check.reference.model].title}"
         return (
             f"interrupted; its first mesh, {refinement.steps[0].setting}, was solved for statics "
-            f"alone, in which {name} may be {100 * distances[name]:.2g} % from the "
-            f"{LADDER[check.reference.model].title}"
+            f"alone, in which {name} may be {100 * doubts[name]:.2g} % {from_what}"
         )
+
+    def _score_of_statics(self, tied: Tied, values: Numbers) -> np.ndarray | None:
+        """Return weights of the cells of a mesh by the error bars of static numbers that are too wide;
+        None where none is known to be.
+        """
+        refinement, names = self.refinement, list(values.quantities)
+        try:
+            judged = bounded(
+                refinement.scene, tied.body, tied.supports, tied.statics, None, names, values.solver
+            )
+        except (NoBounds, NoRoom):
+            return None  # told of the mesh with its modes
+        refinement.error_bars = judged.error_bars
+        return refinement.score(judged, refinement.wanted)
 
     def _judge_mesh(self, solution: Solution) -> np.ndarray | None:
         """Add the error bars of a mesh to its solution; return weights of its cells by those that
@@ -296,9 +324,8 @@ def _judged(
     )
 
 
-def _level_of(answer: Answer) -> LevelRecord:
-    """Build the record of one mesh of a list."""
-    body, values = answer.body, answer.quantities
+def _level_of(body: Body, values: Mapping[Quantity, float]) -> LevelRecord:
+    """Build the record of one mesh of a list, which may be solved for statics alone."""
     order = body.mesh.get("order")
     return LevelRecord(
         dofs=body.size,
