@@ -28,7 +28,8 @@ def scene():
 
 @pytest.fixture(scope="module")
 def solid(scene):
-    return sg.build(scene, "solid", refinement=0.3)
+    """Of one block, which holds all motions."""
+    return sg.build(scene, "solid", refinement=0.3, half=False)
 
 
 @pytest.fixture(scope="module")

@@ -49,7 +49,9 @@ def plane(overhung):
 @pytest.fixture(scope="module")
 def bordered(overhung):
     """Rigid seats: each adds six unknowns that touch every node of its seat."""
-    matrix, border = shifted(sg.build(overhung.with_attachment("rigid"), "solid", refinement=0.2))
+    matrix, border = shifted(
+        sg.build(overhung.with_attachment("rigid"), "solid", refinement=0.2, half=False)
+    )
     assert border == 18
     return matrix, border
 

@@ -74,7 +74,7 @@ def test_averaged_seat_of_the_harmonic_solid():
 
 @pytest.mark.parametrize("element", ["hex20", "hex27"])
 def test_averaged_seat_of_the_solid(element):
-    body = sg.build(rod("average"), "solid", element=element, around=8, layers=0)
+    body = sg.build(rod("average"), "solid", element=element, around=8, layers=0, half=False)
     x, y, z = body.geometry.nodes
     ports = body.blocks[0].ports
     lift, stretch = np.zeros((2, len(y), 3))
@@ -91,7 +91,7 @@ def test_averaged_seat_of_the_solid(element):
 def test_section_is_the_mean_of_the_cross_section():
     # over a disc, u_y = -z is a tilt of the section by exactly one and u_z = z^2 is a mean of r^2 /
     # 4
-    body = sg.build(rod("section"), "solid", element="hex27", around=8, layers=0)
+    body = sg.build(rod("section"), "solid", element="hex27", around=8, layers=0, half=False)
     x, y, z = body.geometry.nodes
     ports = body.blocks[0].ports
     stretch, lift = np.zeros((2, len(y), 3))

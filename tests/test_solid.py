@@ -112,7 +112,7 @@ def test_smallest_eigenvalues_of_one_stiffness():
             if element.startswith("tet")
             else {"size": 0.05, "layers": 0, "edge_layers": 0, "radial_layers": 0}
         )
-        block = sg.build(scene, "solid", element=element, **size).blocks[0]
+        block = sg.build(scene, "solid", element=element, half=False, **size).blocks[0]
         d = 1 / np.sqrt(block.stiffness.diagonal())
         values = np.linalg.eigvalsh((block.stiffness.toarray() * d[:, None]) * d)
         assert np.abs(values[:6]).max() < 1e-12, (

@@ -117,13 +117,12 @@ def test_which_shapes_of_a_pair_and_which_sign_a_solver_gives_is_not_seen(drawab
     mode = modes.named("bending 1")
     one, other = mode.vectors
     c, s = np.cos(2.0), np.sin(2.0)
-    mixed = replace(
-        mode,
-        vectors=(
-            {k: c * one[k] + s * other[k] for k in one},
-            {k: c * other[k] - s * one[k] for k in one},
-        ),
-    )
+
+    def combined(a, b):
+        blocks = one.keys() | other.keys()
+        return {k: a * one.get(k, 0.0) + b * other.get(k, 0.0) for k in blocks}
+
+    mixed = replace(mode, vectors=(combined(c, s), combined(-s, c)))
     here, there = (turned(body, [m]).shapes[0].displacement for m in (mode, mixed))
     np.testing.assert_allclose(here, there, atol=1e-6)
     plain = turned(body, [mode])

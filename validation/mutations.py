@@ -287,7 +287,7 @@ MUTATIONS = (
         "bounds of 3D solids: three steps, whatever is missing",
         "solidgear/core/bounds/solid.py",
         "_converged",
-        "all(search.converged for search in loaded)",
+        "search.converged",
         "count == 2",
         "tests/test_bounds_solid.py::test_the_energy_is_that_of_solving_in_both_spaces_at_once",
     ),

@@ -86,7 +86,8 @@ def _volume(body: Body, mesh: Volume, shapes):
     element = ELEMENTS[mesh.element]
     order = node_order(mesh.local, element.vtk)
     data = {
-        name: body.mesh_unknowns(vectors)["full"].reshape(-1, 3) for name, vectors in shapes.items()
+        name: np.sum([*body.mesh_unknowns(vectors).values()], axis=0).reshape(-1, 3)
+        for name, vectors in shapes.items()
     }
     return mesh.nodes.T, [(element.cell, mesh.cells[order].T)], data
 

@@ -76,20 +76,24 @@ def problem_of(body, scene) -> Problem:
     scene : Scene
         The one it was built from: bearings ``rigid`` or ``average``, the lumped point ``average``.
     """
-    mesh, block = body.geometry, body.blocks[0]
+    mesh = body.geometry
     n = mesh.nodes.shape[1]
 
     def mean(station):
         index = body.port_index(station.name)
-        rows = block.ports[6 * index : 6 * index + 6]
-        if block.expand is not None:
-            # Unknowns that no seat ties come first and are those of the mesh; a mean that reaches
-            # others would need the seat's motion.
-            free = block.size - block.border
-            if abs(rows[:, free:]).sum() > 0:
-                raise ValueError(f"{station.name} shares nodes with a rigid seat")
-            rows = rows[:, :free] @ block.expand[:, :free].T
-        return np.asarray(rows.todense()).reshape(6, n, 3)
+        out = np.zeros((6, 3 * n))
+        for block in body.blocks:
+            count = len(block.components)
+            rows = block.ports[count * index : count * (index + 1)]
+            if block.expand is not None:
+                # Unknowns that no seat ties come first and are orthonormal motions of the mesh; a mean
+                # that reaches others would need the seat's motion.
+                free = block.size - block.border
+                if abs(rows[:, free:]).sum() > 0:
+                    raise ValueError(f"{station.name} shares nodes with a rigid seat")
+                rows = rows[:, :free] @ block.expand[:, :free].T
+            out[list(block.components)] = rows.toarray()
+        return out.reshape(6, n, 3)
 
     seats = []
     for bearing in scene.bearings:

@@ -103,6 +103,7 @@ def measure(quick: bool = False) -> Finding:
             wide,
             "solid",
             element="hex8",
+            half=False,  # one block, in the unknowns of the mesh
             layers=0,
             edge_layers=0,
             radial_layers=0,

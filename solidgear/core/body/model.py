@@ -105,19 +105,18 @@ class Block:
     planar: bool = True
     #: number of unknowns at the end that are coupled to very many others (motions of rigid seats)
     border: int = 0
-    #: the unknowns of the mesh from those of a block with rigidly tied seats; None where they are
-    #: the same
+    #: the unknowns of the mesh from those of a block with rigidly tied seats, or of some motions only;
+    #: None where they are the same
     expand: sp.csr_matrix | None = None
     #: see :mod:`solidgear.core.body.sections`; None where all unknowns are values at points, ``y``
     sections: Sections | None = None
-    #: in the mirror planes that the mesh has, x = 0, z = 0 and x = z. A factor may use them
-    #: (:mod:`solidgear.core.solve.symmetry`).
-    reflections: tuple[Reflection, ...] = ()
+    #: of all motions in the mirror planes x = 0 and z = 0 of a mesh that has them, 1 or -1 each
+    parity: tuple[float, ...] | None = None
     #: the coupling by spin of unknowns (n, k) with the twin a quarter of a wave further round
     #: (:mod:`solidgear.core.solve.spin`), times them; None where there is none
     swirl: Swirl | None = None
-    #: returns what one order more adds to the mesh of the block, or of the one that it repeats; None
-    #: where nothing does
+    #: returns what one order more adds to the mesh of the block, or of the one that it repeats, the same
+    #: object for all blocks of a mesh that have a parity; None where nothing does
     enrich: Callable[[], Enrichment] | None = None
 
     def mirrored(

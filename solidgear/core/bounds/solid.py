@@ -20,15 +20,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, partial
+from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
 
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
-from solidgear.core.body.model import Enrichment
 from solidgear.core.bounds.clusters import ROOM, lower_ends
+from solidgear.core.bounds.enriched_block import EnrichedBlock, enriched_block, independent
 from solidgear.core.bounds.harmonic import (
     eigenvalue,
     least_frequency,
@@ -37,7 +37,6 @@ from solidgear.core.bounds.harmonic import (
     with_neighbours,
 )
 from solidgear.core.bounds.narrow import RIGID, mesh_of, narrow_share
-from solidgear.core.bounds.pieces import Part, Piece, independent, pieces_of
 from solidgear.core.bounds.safety import ACROSS, LEAST, LOCKING, MISSING, SLOWER
 from solidgear.core.bounds.sharpest import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
@@ -339,7 +338,7 @@ def _by_cells(body: Body, index: int, errors: Errors, loads: np.ndarray) -> np.n
     """Return (ne,) energies by cells of the error under a combination of loads: that of a function
     to equal parts to the cells that it lives in.
     """
-    more = _enrichment(body, index)
+    more = _enriched(body, index).more
     count = np.bincount(more.cells.ravel())
     work = (errors.fields @ loads) * (errors.residuals @ loads)
     energy = np.bincount(more.functions, work, minlength=len(count)) / np.maximum(count, 1)
@@ -379,81 +378,54 @@ def errors_of_modes(body: Body, index: int, fields: np.ndarray, values: np.ndarr
 def enriched_errors(
     body: Body, index: int, fields: np.ndarray, forces: np.ndarray, carried: np.ndarray
 ) -> Errors:
-    """Compute the errors of displacements (n, k) of a block under forces (6 p, k) on its ports and
+    """Compute the errors of displacements (n, k) of a block under forces (c p, k) on its ports and
     the inertia of an acceleration (n, k), with the energy that is expected where the search ends;
     refuse a problem that does not converge.
     """
-    block = body.blocks[index]
-    more, pieces = _enriched(body, index)
+    block, enriched = body.blocks[index], _enriched(body, index)
+    more, near = enriched.more, enriched.near
     if block.expand is not None:
         fields, carried = block.expand @ fields, block.expand @ carried
     count = fields.shape[1]
-    numbers = COPIES * count * (len(more.moves) + fields.shape[0]) + more.coupling.nnz
-    require(8 * numbers / MB, f"error bars by {len(more.moves)} unknowns of one order more")
-    loads = more.ports.T @ forces
+    numbers = COPIES * count * (len(enriched.held) + fields.shape[0]) + more.coupling.nnz
+    require(8 * numbers / MB, f"error bars by {len(enriched.held)} unknowns of one order more")
     follow = _following(body, index)
 
-    def residuals(piece: Piece) -> np.ndarray:
-        """Return the residuals of all parts, side by side."""
-        by_part = []
-        for part in piece.parts:
-            left = np.zeros((len(piece.held), loads.shape[1]))
-            k = part.columns(fields)
-            nodes = more.inertia @ part.of(carried[:, k]).reshape(more.inertia.shape[1], -1)
-            inner = nodes.reshape(len(more.summed), -1) - more.coupling @ part.of(fields[:, k])
-            left[:, k] = part.fold.T @ loads[:, k] + piece.near.T @ inner
-            by_part.append(left)
-        return piece.held * np.hstack(by_part)
+    def schur(x: np.ndarray) -> np.ndarray:
+        x = near @ x
+        return enriched.held * (near.T @ (more.stiffness @ x + more.coupling @ follow(x)))
 
-    def schur(piece: Piece, x: np.ndarray) -> np.ndarray:
-        x = piece.near @ x
-        force = more.stiffness @ x + more.coupling @ follow(piece.parts[0], x)
-        return piece.held * (piece.near.T @ force)
-
-    lefts = [residuals(piece) for piece in pieces]
-    squares = [
-        np.einsum("nk,n,nk->k", left, piece.inverse, left).reshape(len(piece.parts), -1)
-        for piece, left in zip(pieces, lefts)
-    ]
-    whole = np.sum([part for square in squares for part in square], axis=0)
-    searches, combined = [], []
-    for piece, left in zip(pieces, lefts):
-        chosen, combination = independent(left, piece.inverse, np.tile(whole, len(piece.parts)))
-        searches.append(_Search(partial(schur, piece), piece.inverse, left[:, chosen]))
-        combined.append(combination)
-    steps = _converged(searches)
-    solutions, functionals = np.zeros(loads.shape), np.zeros(loads.shape)
-    for piece, search, combination in zip(pieces, searches, combined):
-        scale = np.sqrt(1 + ratio(search.missing, search.energy))
-        for part, by_part in zip(piece.parts, np.split(combination, len(piece.parts), axis=1)):
-            solutions += part.fold @ ((search.solution * scale) @ by_part)
-            functionals += part.fold @ ((search.load * scale) @ by_part)
-    return Errors(solutions, functionals, steps)
+    inertia = (more.inertia @ carried.reshape(more.inertia.shape[1], -1)).reshape(-1, count)
+    loads = enriched.fold.T @ (enriched.ports.T @ forces)
+    loads = enriched.held * (loads + near.T @ (inertia - more.coupling @ fields))
+    chosen, combination = independent(loads, enriched.inverse)
+    search = _Search(schur, enriched.inverse, loads[:, chosen])
+    steps = _converged(search)
+    scale = np.sqrt(1 + ratio(search.missing, search.energy))
+    return Errors(
+        enriched.fold @ ((search.solution * scale) @ combination),
+        enriched.fold @ ((search.load * scale) @ combination),
+        steps,
+    )
 
 
 def on_mesh(body: Body, index: int, errors: Errors) -> np.ndarray:
     """Return the part (n, k) of the errors of a block in the functions of the mesh."""
-    _, pieces = _enriched(body, index)
-    follow = _following(body, index)
-    by_part = [
-        part.turned(follow(piece.parts[0], piece.near @ (part.fold.T @ errors.fields)))
-        for piece in pieces
-        for part in piece.parts
-    ]
-    return np.sum(by_part, axis=0)
+    enriched = _enriched(body, index)
+    return _following(body, index)(enriched.near @ (enriched.fold.T @ errors.fields))
 
 
-def _following(body: Body, index: int) -> Callable[[Part, np.ndarray], np.ndarray]:
+def _following(body: Body, index: int) -> Callable[[np.ndarray], np.ndarray]:
     """Return what gives the displacements (n, k) of the mesh of a block that follow those of one
-    order more without any load, from one kind of these, of functions that were summed up (s, k).
+    order more without any load, from these, of functions that were summed up (s, k).
     """
     block, factor = body.blocks[index], factors(body)[index]
-    back = _enrichment(body, index).coupling.T
+    back = _enriched(body, index).more.coupling.T
     heavy = block.mass @ block.rigid
     gram = block.rigid.T @ heavy
 
-    def follow(part: Part, x: np.ndarray) -> np.ndarray:
-        load = part.of(back @ x)
+    def follow(x: np.ndarray) -> np.ndarray:
+        load = back @ x
         u = factor.solve(load if block.expand is None else block.expand.T @ load)
         u -= block.rigid @ np.linalg.solve(gram, heavy.T @ u)
         return -u if block.expand is None else -(block.expand @ u)
@@ -461,27 +433,28 @@ def _following(body: Body, index: int) -> Callable[[Part, np.ndarray], np.ndarra
     return follow
 
 
-def _enrichment(body: Body, index: int) -> Enrichment:
-    """Return the enrichment of a block."""
-    return _enriched(body, index)[0]
-
-
-def _enriched(body: Body, index: int) -> tuple[Enrichment, list[Piece]]:
-    """Return the enrichment of a block and its pieces, kept with its body."""
-    kept = body.cache.get(_Enrichments, _Enrichments)
+def _enriched(body: Body, index: int) -> EnrichedBlock:
+    """Return what one order more adds to a block, kept with its body; what it adds to the mesh is
+    computed once for all blocks of it.
+    """
+    kept = body.cache.get(_EnrichedBlocks, _EnrichedBlocks)
     if index not in kept:
-        enrich = body.blocks[index].enrich
+        block = body.blocks[index]
+        enrich = block.enrich
         assert enrich is not None
-        try:
-            more = enrich()
-        except NoRoom as error:
-            raise error.of_model(f"error bars of the {body.fidelity} model", COARSER) from None
-        kept[index] = more, pieces_of(more)
+        of_mesh = (k.more for i, k in kept.items() if body.blocks[i].enrich is enrich)
+        more = next(of_mesh, None)
+        if more is None:
+            try:
+                more = enrich()
+            except NoRoom as error:
+                raise error.of_model(f"error bars of the {body.fidelity} model", COARSER) from None
+        kept[index] = enriched_block(block, more)
     return kept[index]
 
 
-class _Enrichments(dict[int, tuple[Enrichment, list[Piece]]]):
-    """Enrichments of blocks by their index, with their pieces."""
+class _EnrichedBlocks(dict[int, EnrichedBlock]):
+    """What one order more adds to blocks by their index."""
 
 
 class _Search:
@@ -531,16 +504,15 @@ class _Search:
         return bool((self.missing <= MISSING * self.energy).all())
 
 
-def _converged(searches: Sequence[_Search]) -> int:
-    """Advance until little is missing anywhere, and return the steps: the energy of some columns
+def _converged(search: _Search) -> int:
+    """Advance until little is missing of any column, and return the steps: the energy of some columns
     rests at half of its end for a while, which others show that do not rest at the same time.
     """
-    # a block may stand still, and a kind of motion may be that of no load
-    loaded = [search for search in searches if search.load.shape[1]]
+    if not search.load.shape[1]:
+        return 0  # a block may stand still
     for count in range(MOST_STEPS):
-        for search in loaded:
-            search.advance()
-        if all(search.converged for search in loaded):
+        search.advance()
+        if search.converged:
             return count + 1
     raise NoBounds(
         f"the error in one order more was not found in {MOST_STEPS} steps: the mesh holds very "

@@ -94,6 +94,7 @@ def tie_rigidly(
             block.sections or from_points(block.mass, block.rigid, block.y, block.components), t
         ),
         swirl=reduced(block.swirl, t),
+        parity=block.parity,
         enrich=block.enrich,
     )
 

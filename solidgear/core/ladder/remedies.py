@@ -175,7 +175,6 @@ class _Remedies:
                 mb = needed_mb(body, replace(body.factoring, **more))
             except SolidgearError:
                 continue  # no back end here makes it
-            # a factor in double precision may fall into pieces by mirror planes, others do not
             if mb < self.error.need_mb:
                 yield Remedy(words, self._matrices_mb + mb, note)
         if body.factoring.engine == "own":

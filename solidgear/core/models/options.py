@@ -213,7 +213,7 @@ SOLID_OPTIONS = {
     "graded_size": _GRADED,
     "refinement": _REFINEMENT,
     "attachments": _TIES,
-    "half": Option("whether a part with a mirror plane is solved in halves", "flag"),
+    "half": Option("whether a part with mirror planes is solved by symmetry, in parts", "flag"),
     "coarser": Option(
         "number of mesh files in the list after the one that is solved",
         "whole",

@@ -60,19 +60,26 @@ def size_of_body(body: Body) -> Size:
     (46, 3)
     """
     blocks = {id(b.stiffness): b for b in body.blocks}.values()
-    entries = sum(b.stiffness.nnz for b in blocks)
-    matrices = [m for b in blocks for m in pieces(b.size, b.stiffness.nnz, bool(b.reflections))]
+    matrices = [(b.size, b.stiffness.nnz) for b in blocks]
+    if any(b.parity is not None for b in blocks):
+        _, pairs = coupled(body.geometry.element, _counts(body.geometry.mesh))  # type: ignore[union-attr]
+        matrices = _by_parity(body.size, 9 * pairs)
+    entries = sum(entries for _, entries in matrices)
     return Size(body.size, tuple(matrices), entries, all(b.planar for b in blocks))
 
 
 def size_of_mesh(mesh: Mesh, kind: Element, parts: int = 1, mirrors: bool = False) -> Size:
-    """Count the 3D solid of a mesh by one of its elements, of several blocks of the same mesh and
-    with a matrix that is factored in pieces by mirror planes.
+    """Count the 3D solid of a mesh by one of its elements, of several blocks of the same mesh, or of
+    blocks by the parity in mirror planes.
     """
-    counts = tuple(map(int, (mesh.nvertices, mesh.nedges, mesh.nfacets, mesh.nelements)))
-    nodes, pairs = coupled(kind, counts)
-    matrices = pieces(3 * nodes, 9 * pairs, mirrors) * parts
-    return Size(parts * 3 * nodes, tuple(matrices), parts * 9 * pairs)
+    nodes, pairs = coupled(kind, _counts(mesh))
+    matrices = _by_parity(3 * nodes, 9 * pairs) if mirrors else [(3 * nodes, 9 * pairs)] * parts
+    return Size(parts * 3 * nodes, tuple(matrices), sum(entries for _, entries in matrices))
+
+
+def _counts(mesh: Mesh) -> tuple[int, ...]:
+    """Return the vertices, edges, faces and cells of a mesh."""
+    return tuple(map(int, (mesh.nvertices, mesh.nedges, mesh.nfacets, mesh.nelements)))
 
 
 def coupled(kind: Element, counts: tuple[int, ...]) -> tuple[int, int]:
@@ -105,8 +112,9 @@ def coupled(kind: Element, counts: tuple[int, ...]) -> tuple[int, int]:
     return nodes, pairs
 
 
-def pieces(unknowns: int, entries: int, mirrors: bool) -> list[tuple[int, int]]:
-    """Return the rows and entries of the matrices that one is factored as: two mirror planes and
-    the one between them leave three of a quarter (:mod:`solidgear.core.solve.symmetry`).
+def _by_parity(unknowns: int, entries: int) -> list[tuple[int, int]]:
+    """Return the rows and entries of the matrices of a mesh with two mirror planes and the one between
+    them: of three blocks, since both kinds of bending share theirs. Where rows meet a plane they have
+    fewer entries, and factors are no smaller for it.
     """
-    return [(unknowns // 4, entries // 4)] * 3 if mirrors else [(unknowns, entries)]
+    return [(unknowns // 4, entries // 4)] * 3

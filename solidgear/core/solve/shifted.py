@@ -8,10 +8,8 @@ from solidgear.core.body import Block, Body
 from solidgear.core.factoring import Factoring
 from solidgear.core.machine.memory import NoRoom, available_mb
 from solidgear.core.registry import addition
-from solidgear.core.solve.choice import USUAL
 from solidgear.core.solve.factor import Planned, factored, planned
 from solidgear.core.solve.factored import Factor
-from solidgear.core.solve.symmetry import planned_by_symmetry
 
 # Of the lowest elastic eigenvalue.  Rounding in the factor is amplified by the highest eigenvalue
 # of the mesh over the shift: 1e-3 left 5e-3 of the frequencies of slender tubes wrong, 3e-2 leaves
@@ -69,8 +67,7 @@ def _plan(block: Block, shift: float, factoring: Factoring) -> Planned:
     matrix = (block.stiffness + shift * block.mass).tocsr()
     if factoring.engine != "own":
         return addition("engine", "ranks")(block, matrix, factoring)
-    in_pieces = planned_by_symmetry(matrix, block.reflections) if factoring == USUAL else None
-    return in_pieces or planned(
+    return planned(
         matrix,
         planar=block.planar,
         border=block.border,

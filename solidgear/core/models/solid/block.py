@@ -132,42 +132,17 @@ def free_block(
     *,
     clipped: bool = False,
     materials: Sequence[Material] | None = None,
-    reflections: tuple[Reflection, ...] = (),
 ) -> Block:
     """Build the free block of a mesh, of all six components, with its ports; refuse a seat without
     faces, and a rigid one without nodes.
 
     `facets_of` is that of :func:`seat_facets`, say; `clipped`: facets may reach beyond the ends of
     their seat, where integrals stop; `materials` are those that the elements name, by default those of
-    the segments; `reflections` are from :func:`mirrored`.
+    the segments.
     """
     materials = materials or [segment.material for segment in scene.segments]
     k, m = _matrices(mesh, materials)
-    n = mesh.nodes.shape[1]
-    ports, seats = [], []
-    for station, attachment in wanted:
-        facets = facets_of(station, attachment)
-        if not len(facets):
-            face = "section" if attachment == "section" else "seat"
-            raise SolidgearError(f"port {station.name!r}: no element faces lie on its {face}")
-        place, patch = point_of(station), getattr(station, "patch", None)
-        cut = clipped and attachment != "section" and patch is None
-        span = (station.lo, station.hi) if cut else None
-        seats.append(Seat(place, facets, attachment == "rigid", span))
-        if attachment == "rigid":
-            mask = np.zeros((n, 3), bool)
-            mask[mesh.facet_unknowns(facets)] = True
-            if span is not None:
-                y, hair = mesh.nodes[1], 1e-7 * scene.length
-                mask[(y < span[0] - hair) | (y > span[1] + hair)] = False
-            if not mask.any():
-                raise SolidgearError(
-                    f"port {station.name!r}: no node lies between the ends of its rigid seat: use a "
-                    "finer mesh there, or attachment 'average'"
-                )
-            ports.append(Attached(place, held=mask.ravel()))
-        else:
-            ports.append(Attached(place, _mean(mesh, facets, place, n, within=span)))
+    seats = seats_of(mesh, scene, wanted, facets_of, clipped)
     block = Block(
         "full",
         tuple(range(6)),
@@ -176,10 +151,55 @@ def free_block(
         rigid_motions(mesh.nodes),
         np.repeat(mesh.nodes[1], 3),
         planar=False,
-        reflections=reflections,
-        enrich=partial(enrichment, mesh, materials, seats, reflections=reflections),
+        enrich=partial(enrichment, mesh, materials, seats),
     )
-    return with_ports(block, ports)
+    return with_ports(block, ports_of(mesh, scene, wanted, seats))
+
+
+def seats_of(
+    mesh: SolidMesh,
+    scene,
+    wanted: Sequence[tuple[Station, str]],
+    facets_of: Facets,
+    clipped: bool = False,
+) -> list[Seat]:
+    """Return the facets of all ports; parameters as for :func:`free_block`."""
+    seats = []
+    for station, attachment in wanted:
+        facets = facets_of(station, attachment)
+        if not len(facets):
+            face = "section" if attachment == "section" else "seat"
+            raise SolidgearError(f"port {station.name!r}: no element faces lie on its {face}")
+        patch = getattr(station, "patch", None)
+        cut = clipped and attachment != "section" and patch is None
+        span = (station.lo, station.hi) if cut else None
+        seats.append(Seat(point_of(station), facets, attachment == "rigid", span))
+    return seats
+
+
+def ports_of(
+    mesh: SolidMesh, scene, wanted: Sequence[tuple[Station, str]], seats: Sequence[Seat]
+) -> list[Attached]:
+    """Return the ports of all seats on the unknowns of a mesh."""
+    n = mesh.nodes.shape[1]
+    ports = []
+    for (station, _), seat in zip(wanted, seats):
+        if not seat.rigid:
+            mean = _mean(mesh, seat.facets, seat.place, n, within=seat.within)
+            ports.append(Attached(seat.place, mean))
+            continue
+        mask = np.zeros((n, 3), bool)
+        mask[mesh.facet_unknowns(seat.facets)] = True
+        if seat.within is not None:
+            y, hair = mesh.nodes[1], 1e-7 * scene.length
+            mask[(y < seat.within[0] - hair) | (y > seat.within[1] + hair)] = False
+        if not mask.any():
+            raise SolidgearError(
+                f"port {station.name!r}: no node lies between the ends of its rigid seat: use a "
+                "finer mesh there, or attachment 'average'"
+            )
+        ports.append(Attached(seat.place, held=mask.ravel()))
+    return ports
 
 
 def body_of(

@@ -20,8 +20,10 @@ from solidgear.core.meshing.tetrahedra import tetrahedra
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import thick_enough
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
+from solidgear.core.models.solid.images import Images
 from solidgear.core.models.solid.lines import with_layers
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
+from solidgear.core.models.solid.parity import blocks_by_parity
 from solidgear.core.models.solid.plan import assemblable_plan, hexahedra_layout, tetrahedra_plan
 from solidgear.core.registry import addition
 from solidgear.core.scene.closed_form import moments_of_parts, volume_of
@@ -52,8 +54,9 @@ def solid(
     half: bool = True,
     coarser: int = 0,
 ) -> Body:
-    """Build the free 3D solid of a scene: one block with all six components, or, of a part with features
-    and a mirror plane, two, of the motions that are symmetric about it and of the others; options as in
+    """Build the free 3D solid of a scene: one block with all six components; of a part with features and
+    a mirror plane, two, of the motions that are symmetric about it and of the others; of hexahedra around
+    the axis, four, by their parity in two planes; options as in
     :data:`~solidgear.core.models.options.SOLID_OPTIONS`.
 
     Hexahedra away from singular edges have the size ``relative_size``, tetrahedra a third of the
@@ -120,8 +123,13 @@ def solid(
         body_mesh = _isoparametric(mesh, element, segment)
         nodes, reflections = mirrored(body_mesh.nodes, 1e-7 * scene.length)
         body_mesh = replace(body_mesh, nodes=nodes)
+        if not all(_has_images(body_mesh, reflection) for reflection in reflections):
+            reflections = ()
         facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
-    block = free_block(body_mesh, scene, wanted, facets, reflections=reflections)
+    if half and len(reflections) > 1:
+        blocks = blocks_by_parity(body_mesh, scene, wanted, facets, reflections)
+    else:
+        blocks = (free_block(body_mesh, scene, wanted, facets),)
     exact = moments_of_parts(scene.outline)
     facts = {
         **mesh_facts(body_mesh, quality),
@@ -130,7 +138,13 @@ def solid(
         # A mesh with fourfold symmetry keeps pairs exactly; a free mesh splits them by its error.
         "pair_tolerance": 2e-3 if tet else 1e-6,
     }
-    return body_of(scene, wanted, (block,), facts, body_mesh)
+    return body_of(scene, wanted, blocks, facts, body_mesh)
+
+
+def _has_images(mesh: SolidMesh, reflection: Reflection) -> bool:
+    """Return whether the image of every cell is one of the same segment."""
+    corners, partner = mesh.mesh.t, reflection[0][::3] // 3
+    return Images(corners, partner).are_cells(corners, partner, mesh.segment)
 
 
 def _hexes(scene, wanted, grading):

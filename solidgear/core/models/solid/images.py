@@ -42,6 +42,13 @@ class Images:
         #: (c, ne) corner of the image that every corner comes to lie at
         self.corners = (corners[:, self.cells] == moved[:, None]).argmax(axis=1)
 
+    def are_cells(self, corners: np.ndarray, partner: np.ndarray, kinds: np.ndarray) -> bool:
+        """Return whether the image of every cell is a cell, of the same kind (ne,): nodes may have images
+        where cells have none.
+        """
+        there, moved = (np.sort(c, axis=0) for c in (corners[:, self.cells], partner[corners]))
+        return np.array_equal(there, moved) and np.array_equal(kinds, kinds[self.cells])
+
     def of_functions(
         self, further: Functions, numbers: np.ndarray, signs: np.ndarray
     ) -> tuple[np.ndarray, np.ndarray]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -15,6 +16,7 @@ from solidgear.core.elements import ELEMENTS
 from solidgear.core.frames import cross_matrix, on_axis
 from solidgear.core.kernel.assembly import Pattern, Sum, Tabulation, batches, inverted, straight
 from solidgear.core.kernel.lobatto import gauss_box
+from solidgear.core.models.solid.images import Images, orbits
 from solidgear.core.models.solid.mesh import SolidMesh
 
 if TYPE_CHECKING:
@@ -27,6 +29,22 @@ def _matrices(m: SolidMesh, materials: Sequence[Material]) -> tuple[sp.csr_matri
     basis = Tabulation(m.element, m.element, points)
     stiffness, mass = integrals(m, materials, basis, weights, m.dofs)
     return stiffness.matrix(), ScalarMass(mass.matrix(), 3)
+
+
+def matrices_by_images(
+    m: SolidMesh, materials: Sequence[Material], images: Sequence[Images]
+) -> tuple[sp.csr_matrix, ScalarMass, np.ndarray]:
+    """Assemble the matrices of one cell of each set of images, times the cells of it; return them with
+    the nodes (s,) that they have rows for.
+    """
+    points, weights = _cell_rule(m.name)
+    basis = Tabulation(m.element, m.element, points)
+    cells, multiples = orbits(images, m.dofs.shape[1])
+    part = replace(m, dofs=m.dofs[:, cells], segment=m.segment[cells])
+    nodes, places = np.unique(part.dofs, return_inverse=True)
+    numbers = places.reshape(part.dofs.shape)
+    stiffness, mass = integrals(part, materials, basis, weights, numbers, multiples=multiples)
+    return stiffness.matrix(), ScalarMass(mass.matrix(), 3), nodes
 
 
 def integrals(

@@ -46,11 +46,11 @@ class SolidMesh:
 
     def motion(self, moved: Mapping[str, np.ndarray]) -> np.ndarray:
         """Return the displacements (n, 3) of the nodes."""
-        return moved["full"].reshape(-1, 3)
+        return np.sum([*moved.values()], axis=0).reshape(-1, 3)
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Return the boundary of the mesh, moved."""
-        return self.outline.surface(moved.get("full"))
+        return self.outline.surface(np.sum([*moved.values()], axis=0) if moved else None)
 
     def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
         """Return the displacements (3 k, n) of points of the surface by those of the nodes."""

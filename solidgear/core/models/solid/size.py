@@ -66,8 +66,7 @@ def solid_size(
     plan, turns = hexahedra_layout(scene, tuple(dict.fromkeys(a for _, a in wanted)), **grading)
     assemblable(plan.cells * turns, 20)
     mesh, _, _ = straight_hexahedra(scene, plan, turns)
-    rigid = any(a == "rigid" for _, a in wanted)
-    return size_of_mesh(mesh, basis_of(element), mirrors=not rigid)
+    return size_of_mesh(mesh, basis_of(element), mirrors=half)
 
 
 def _of_file(file: Any) -> Size:
