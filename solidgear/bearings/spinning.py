@@ -42,7 +42,7 @@ from solidgear.core.body.cache import LastTwo
 #: kg/m^3, bearing steel
 DENSITY = 7800.0
 #: of the largest force on a ball; and N, below which rounding of positions is felt
-_BALANCED, _NEGLIGIBLE, _MOST = 1e-10, 1e-9, 100
+_BALANCED, _NEGLIGIBLE, _MOST = 1e-11, 1e-9, 100
 
 
 class _Pressed(NamedTuple):
@@ -161,20 +161,23 @@ class SpinningBalls:
         )
 
     def _settle(self, s: np.ndarray) -> _Pressed:
-        """Return the equilibrium of the balls, from a static approach on."""
+        """Return the equilibrium of the balls, from that of the motion before on."""
         inertia, _ = self._inertia(s)
-        pull, length = np.abs(inertia), np.abs(s)
-        # half of a static approach, and as far outwards as inertia alone presses
-        half = np.maximum(length - self._free.sum(), 0.0) / 2
-        alone = (pull / self.row.rings[1].constant) ** (1 / POINT_POWER)
-        balls = self._pressed(s, s / length * (self._free[1] + half + alone))
+        pull = np.abs(inertia)
+        last = self._last.latest
+        if last is not None and last.force.shape[:-2] == s.shape[:-1]:
+            o = last.between[..., 1, :]  # the outer groove goes on pressing
+        else:
+            o = self._at_first(s, pull)
+        balls = self._pressed(s, o)
         nearly = 1e-4 * self.row.diameter
         for count in range(_MOST):
             miss = balls.force[..., 0, :] - balls.force[..., 1, :] + inertia
             imbalance = np.abs(miss)
             reference = np.abs(balls.force[..., 1, :]) + pull
             balanced = imbalance <= _BALANCED * reference + _NEGLIGIBLE * 1e-3
-            if balanced.all():
+            # one step at least: two near motions must differ by more than what is left unbalanced
+            if count and balanced.all():
                 return balls
             # a step must feel a contact that it is about to meet; less and less so
             _, both = self._stiffness(balls, nearly * 0.5**count)
@@ -182,6 +185,15 @@ class SpinningBalls:
         if np.all(imbalance <= 1e-8 * reference + _NEGLIGIBLE):
             return balls
         raise SolidgearError(f"no equilibrium of the balls at {self.speed:.6g} rad/s")
+
+    def _at_first(self, s: np.ndarray, pull: np.ndarray) -> np.ndarray:
+        """Return vectors o with half of a static approach, and as far outwards as inertia alone
+        presses.
+        """
+        length = np.abs(s)
+        half = np.maximum(length - self._free.sum(), 0.0) / 2
+        alone = (pull / self.row.rings[1].constant) ** (1 / POINT_POWER)
+        return s / length * (self._free[1] + half + alone)
 
     def _stepped(self, s, balls: _Pressed, step, miss, inertia, balanced) -> _Pressed:
         """Return the balls after a step, of each not beyond where the force along it has turned;
