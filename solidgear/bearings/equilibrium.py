@@ -7,8 +7,8 @@ the drive, and no bearing feels them.  The rest is :mod:`solidgear.bearings.bala
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -42,6 +42,11 @@ class Equilibrium:
     unbalanced: float  #: largest imbalance, relative to the largest load or to the preloads
     iterations: int
     _state: np.ndarray = field(repr=False, default_factory=lambda: np.zeros(0))
+
+    def moved_by(self, others: Iterable[Equilibrium]) -> Equilibrium:
+        """Return this one as a search begins at it, moved by as much as each of some others is away."""
+        away = (other._state - self._state for other in others)
+        return replace(self, _state=sum(away, self._state))
 
 
 def equilibrium(

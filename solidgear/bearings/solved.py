@@ -110,17 +110,17 @@ def solved(
     for name, k in places.items():
         data = catalogue_of(scene.bearings[k])
         assert data is not None
+        bearing = bearings_made[name].bearing
         waits = settled is not None and data.load is None and data.displacement is None
-        try:
-            bearing_motion = (
-                settled.relative[name]
-                if waits and settled
-                else state(data, bearings_made[name], choice.load)
-            )
-        except SceneError as error:
-            raise located(error, k) from None
-        motion[name] = bearings_made[name].bearing.ring_motion(bearing_motion)
-        tangent[name] = bearings_made[name].bearing.tangent(bearing_motion)
+        if waits and settled:
+            motion_here, tangent[name] = settled.relative[name], settled.tangent[name]
+        else:
+            try:
+                motion_here = state(data, bearings_made[name], choice.load)
+            except SceneError as error:
+                raise located(error, k) from None
+            tangent[name] = bearing.tangent(motion_here)
+        motion[name] = bearing.ring_motion(motion_here)
         if not tangent[name].any() and not waits:
             once = " (once for both of a pair)" * data.one_sided
             reason = (
@@ -129,7 +129,8 @@ def solved(
             )
             raise located(SceneError(reason), k)
     bearings = tuple(_with_stiffness(b, tangent) for b in scene.bearings)
-    return Solved(scene.with_changes(bearings=bearings), bearings_made, motion, settled)
+    # a stiffness bears on nothing else of a sound scene
+    return Solved(scene.unjudged(bearings=bearings), bearings_made, motion, settled)
 
 
 def _unused_ribs(scene: Scene) -> str:

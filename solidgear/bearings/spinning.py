@@ -19,16 +19,22 @@ left the inner ring has no angle there.  (With both angles in these formulas a 2
 under 17.8 kN comes out at 45.4 and 37.4 degrees instead of 45.1 and 37.7.)  For a given s the rest
 is a convex problem of the ball. The tangent is implicit differentiation of this equilibrium, with
 the turning of a in F_c and M_g. Inertia is no spring: the tangent is not quite symmetric.
+
+Vectors in the plane of a ball are complex numbers here, radial + i axial: a few operations on all
+balls take the place of a small matrix of each.  A contact of stiffness k along its unit normal n and
+t across answers a motion v, of conjugate v*, with ``(k + t)/2 v + (k - t)/2 n^2 v*``.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 
 from solidgear.bearings.ball import BallRow
-from solidgear.bearings.hertz import POINT_POWER, Point
+from solidgear.bearings.hertz import POINT_POWER
 from solidgear.bearings.row import FELT, Contacts, six
 from solidgear.core import SolidgearError
 from solidgear.core.body.cache import LastTwo
@@ -36,7 +42,34 @@ from solidgear.core.body.cache import LastTwo
 #: kg/m^3, bearing steel
 DENSITY = 7800.0
 #: of the largest force on a ball; and N, below which rounding of positions is felt
-_BALANCED, _NEGLIGIBLE, _MOST = 1e-10, 1e-9, 100
+_BALANCED, _NEGLIGIBLE, _MOST = 1e-11, 1e-9, 100
+
+
+class _Pressed(NamedTuple):
+    """Balls between their grooves, (..., 2, n): at the inner and at the outer ring."""
+
+    between: np.ndarray  #: vectors i and o between the centres of grooves and balls
+    length: np.ndarray  #: of these vectors
+    approach: np.ndarray  #: length beyond that at which ball and groove just touch
+    across: np.ndarray  #: stiffnesses across the vectors, force over length
+    force: np.ndarray  #: along the vectors
+
+
+class _Stiffness(NamedTuple):
+    """Stiffness of balls against motions in their planes."""
+
+    mean: np.ndarray  #: (..., n) of both principal stiffnesses
+    #: (..., n) half of their difference, times the square of the normal of the first
+    turned: np.ndarray
+
+    def force(self, motion: np.ndarray) -> np.ndarray:
+        """Return the forces of motions (..., n)."""
+        return self.mean * motion + self.turned * motion.conj()
+
+    def motion(self, force: np.ndarray) -> np.ndarray:
+        """Return the motions under forces (..., n)."""
+        determinant = self.mean**2 - np.abs(self.turned) ** 2
+        return (self.mean * force - self.turned * force.conj()) / determinant
 
 
 @dataclass(frozen=True)
@@ -46,10 +79,8 @@ class SpinningBalls:
     row: BallRow
     speed: float  #: rad/s
     density: float = DENSITY  #: of the balls, kg/m^3
-    #: where the balls settled, by motion: load and tangent of one motion are asked in turn
-    _last: LastTwo[tuple[np.ndarray, np.ndarray]] = field(
-        default_factory=LastTwo, init=False, repr=False, compare=False
-    )
+    #: the balls in equilibrium, by motion: load and tangent of one motion are asked in turn
+    _last: LastTwo[_Pressed] = field(default_factory=LastTwo, init=False, repr=False, compare=False)
 
     @property
     def pitch(self) -> float:
@@ -61,20 +92,33 @@ class SpinningBalls:
         """Of a ball, kg."""
         return self.density * np.pi / 6 * self.row.diameter**3
 
-    def _grooves(self) -> tuple[tuple[Point, float], tuple[Point, float]]:
-        """Return the contact and free distance of groove and ball centre, inner and outer."""
-        row = self.row
-        inner, outer = row.rings
-        return (
-            (inner, (row.inner - 0.5) * row.diameter),
-            (outer, (row.outer - 0.5) * row.diameter),
-        )
+    @cached_property
+    def _constants(self) -> np.ndarray:
+        """(2, 1) of the contacts at the inner and at the outer ring."""
+        return np.array([[ring.constant] for ring in self.row.rings])
+
+    @cached_property
+    def _free(self) -> np.ndarray:
+        """(2, 1) distances of the centres of groove and ball that just touch, m."""
+        return (np.array([[self.row.inner], [self.row.outer]]) - 0.5) * self.row.diameter
+
+    @cached_property
+    def _felt(self) -> np.ndarray:
+        """(n, 5) motion of the inner groove's centre at every ball."""
+        radial, axial = self.row._felt
+        return radial + 1j * axial
+
+    @cached_property
+    def _products(self) -> np.ndarray:
+        """(4 n, 25) products of the components of these, first of the component that moves."""
+        felt = self.row._felt
+        return (felt[None, :, :, :, None] * felt[:, None, :, None, :]).reshape(-1, 25)
 
     def _inertia(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the forces (..., 2) of inertia on balls at s, and their derivative (..., 2, 2)."""
+        """Return the forces (..., n) of inertia on balls at s, and the derivative by the angle."""
         g = self.row.diameter / self.row.pitch
-        length = np.linalg.norm(s, axis=-1)
-        c, sin = s[..., 0] / length, s[..., 1] / length
+        normal = s / np.abs(s)
+        c, sin = normal.real, normal.imag
         orbit, orbit_a = (1 - g * c) / 2, g * sin / 2
         tan = sin / (c + g)
         tan_a = (1 + g * c) / (c + g) ** 2
@@ -88,104 +132,120 @@ class SpinningBalls:
         factor = 2 * self.mass * self.row.diameter / 10 * self.speed**2 / g
         turn = factor * orbit * tan / p
         turn_a = factor * (orbit_a * tan + orbit * tan_a) / p - turn * p_a / p
-        force = np.stack([pull - turn * sin, turn * c], axis=-1)
-        by_angle = np.stack([pull_a - turn_a * sin - turn * c, turn_a * c - turn * sin], axis=-1)
-        angle_by_s = np.stack([-sin, c], axis=-1) / length[..., None]
-        return force, by_angle[..., :, None] * angle_by_s[..., None, :]
+        return pull + 1j * turn * normal, pull_a + (1j * turn_a - turn) * normal
 
-    def _forces(self, s: np.ndarray, o: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the forces (..., n, 2) along both contacts."""
-        (inner, free_i), (outer, free_o) = self._grooves()
-        return _force(s - o, inner.constant, free_i), _force(o, outer.constant, free_o)
+    def _pressed(self, s: np.ndarray, o: np.ndarray) -> _Pressed:
+        """Return balls at o between grooves whose centres are s apart."""
+        between = np.stack([s - o, o], axis=-2)
+        length = np.abs(between)
+        approach = length - self._free
+        across = self._constants * np.maximum(approach, 0.0) ** POINT_POWER / length
+        return _Pressed(between, length, approach, across, across * between)
 
-    def _contacts(self, s: np.ndarray, o: np.ndarray, nearly: float = 0.0):
-        """Return the forces (..., n, 2) along both contacts, and their stiffnesses, `nearly` metres
-        further.
-        """
-        (inner, free_i), (outer, free_o) = self._grooves()
-        q_i, k_i = _contact(s - o, inner.constant, free_i, nearly)
-        q_o, k_o = _contact(o, outer.constant, free_o, nearly)
-        return q_i, q_o, k_i, k_o
+    def _stiffness(self, balls: _Pressed, nearly: float = 0.0) -> tuple[_Stiffness, _Stiffness]:
+        """Return the stiffness of the inner contacts and of both together, `nearly` metres further."""
+        touching = np.where(np.abs(balls.approach) < nearly, nearly, balls.approach)
+        along = POINT_POWER * self._constants * np.sqrt(np.maximum(touching, 0.0))
+        half = (along - balls.across) / 2
+        mean, turned = half + balls.across, half * (balls.between / balls.length) ** 2
+        inner = _Stiffness(mean[..., 0, :], turned[..., 0, :])
+        return inner, _Stiffness(mean.sum(axis=-2), turned.sum(axis=-2))
 
-    def _settled(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return vectors s and o (..., n, 2) at which the balls are in equilibrium."""
-        felt_motion = np.ascontiguousarray(np.asarray(motion, float)[..., FELT])
+    def _settled(self, motion: np.ndarray) -> _Pressed:
+        """Return the balls in equilibrium at motions (..., 6)."""
+        felt_motion = np.asarray(motion, float)[..., FELT]
         key = felt_motion.shape, felt_motion.tobytes()
-        return self._last.on(key, lambda: self._settle(felt_motion))
+        radial, axial = self.row.start
+        return self._last.on(
+            key, lambda: self._settle(radial + 1j * axial + felt_motion @ self._felt.T)
+        )
 
-    def _settle(self, felt_motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        """Return the equilibrium of the balls, from a static approach on."""
-        row = self.row
-        s = np.stack([row.start[k] + felt_motion @ row._felt[k].T for k in (0, 1)], axis=-1)
-        inertia = self._inertia(s)[0]
-        (_, free_i), (outer, free_o) = self._grooves()
-        length = np.linalg.norm(s, axis=-1, keepdims=True)
-        # half of a static approach, and as far outwards as inertia alone presses
-        half = np.maximum(length - free_i - free_o, 0.0) / 2
-        pull = np.abs(inertia).max(axis=-1)
-        o = s / length * (free_o + half + (pull[..., None] / outer.constant) ** (1 / POINT_POWER))
-        nearly = 1e-4 * row.diameter
+    def _settle(self, s: np.ndarray) -> _Pressed:
+        """Return the equilibrium of the balls, from that of the motion before on."""
+        inertia, _ = self._inertia(s)
+        pull = np.abs(inertia)
+        last = self._last.latest
+        if last is not None and last.force.shape[:-2] == s.shape[:-1]:
+            o = last.between[..., 1, :]  # the outer groove goes on pressing
+        else:
+            o = self._at_first(s, pull)
+        balls = self._pressed(s, o)
+        nearly = 1e-4 * self.row.diameter
         for count in range(_MOST):
+            miss = balls.force[..., 0, :] - balls.force[..., 1, :] + inertia
+            imbalance = np.abs(miss)
+            reference = np.abs(balls.force[..., 1, :]) + pull
+            balanced = imbalance <= _BALANCED * reference + _NEGLIGIBLE * 1e-3
+            # one step at least: two near motions must differ by more than what is left unbalanced
+            if count and balanced.all():
+                return balls
             # a step must feel a contact that it is about to meet; less and less so
-            q_i, q_o, k_i, k_o = self._contacts(s, o, nearly * 0.5**count)
-            miss = q_i - q_o + inertia
-            imbalance, reference = np.abs(miss).max(axis=-1), np.abs(q_o).max(axis=-1) + pull
-            if np.all(imbalance <= _BALANCED * reference + _NEGLIGIBLE * 1e-3):
-                return s, o
-            step = np.linalg.solve(k_i + k_o, miss[..., None])[..., 0]
-            size = np.maximum(np.linalg.norm(step, axis=-1, keepdims=True), 1e-30)
-            step = step * np.minimum(1.0, 0.02 * row.diameter / size)
-            o = _moved(o, self._step_share(s, o, step, miss, inertia)[..., None] * step)
+            _, both = self._stiffness(balls, nearly * 0.5**count)
+            balls = self._stepped(s, balls, both.motion(miss), miss, inertia, balanced)
         if np.all(imbalance <= 1e-8 * reference + _NEGLIGIBLE):
-            return s, o
+            return balls
         raise SolidgearError(f"no equilibrium of the balls at {self.speed:.6g} rad/s")
 
-    def _step_share(self, s, o, step, miss, inertia) -> np.ndarray:
-        """Return the part of the step that every ball takes: not beyond where the force along it
-        has turned.
+    def _at_first(self, s: np.ndarray, pull: np.ndarray) -> np.ndarray:
+        """Return vectors o with half of a static approach, and as far outwards as inertia alone
+        presses.
         """
-        first = (miss * step).sum(axis=-1)
-        way = np.ones_like(first)
+        length = np.abs(s)
+        half = np.maximum(length - self._free.sum(), 0.0) / 2
+        alone = (pull / self.row.rings[1].constant) ** (1 / POINT_POWER)
+        return s / length * (self._free[1] + half + alone)
+
+    def _stepped(self, s, balls: _Pressed, step, miss, inertia, balanced) -> _Pressed:
+        """Return the balls after a step, of each not beyond where the force along it has turned;
+        of balls in balance that force is rounding.
+        """
+        size = np.maximum(np.abs(step), 1e-30)
+        step = step * np.minimum(1.0, 0.02 * self.row.diameter / size)
+        first = (miss.conj() * step).real
+        share = np.ones_like(first)
         for _ in range(30):
-            q_i, q_o = self._forces(s, _moved(o, way[..., None] * step))
-            too_far = ((q_i - q_o + inertia) * step).sum(axis=-1) < -0.5 * first
+            moved = self._pressed(s, _moved(balls, share * step))
+            left = moved.force[..., 0, :] - moved.force[..., 1, :] + inertia
+            too_far = ((left.conj() * step).real < -0.5 * first) & ~balanced
             if not too_far.any():
                 break
-            way = np.where(too_far, way / 2, way)
-        return way
+            share = np.where(too_far, share / 2, share)
+        return moved
 
     def angles(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the contact angles (..., n) at the inner and the outer ring, rad."""
-        s, o = self._settled(motion)
-        i = s - o
-        return np.arctan2(i[..., 1], i[..., 0]), np.arctan2(o[..., 1], o[..., 0])
+        angles = np.angle(self._settled(motion).between)
+        return angles[..., 0, :], angles[..., 1, :]
 
     def load(self, motion: np.ndarray) -> np.ndarray:
         """Return the load (..., 6) that holds the inner ring at motions (..., 6), N and N m."""
-        press, _ = self._forces(*self._settled(motion))
-        radial, axial = self.row._felt
-        return six(press[..., 0] @ radial + press[..., 1] @ axial)
+        press = self._settled(motion).force[..., 0, :]
+        return six((press.conj() @ self._felt).real)
 
     def tangent(self, motion: np.ndarray) -> np.ndarray:
         """Return the derivative of the load, (..., 6, 6), exact."""
-        s, o = self._settled(motion)
-        _, _, k_i, k_o = self._contacts(s, o)
-        follows = np.linalg.solve(k_i + k_o, k_i + self._inertia(s)[1])
-        plane = k_i @ (np.eye(2) - follows)
-        felt = self.row._felt
-        small = np.einsum("ani,...nab,bnj->...ij", felt, plane, felt)
-        out = np.zeros((*small.shape[:-2], 6, 6))
-        out[..., np.array(FELT)[:, None], np.array(FELT)] = small
+        balls = self._settled(motion)
+        inner, both = self._stiffness(balls)
+        s = balls.between.sum(axis=-2)
+        _, by_angle = self._inertia(s)
+        weights = []
+        for unit in (1.0 + 0j, 1j):
+            moved = np.full_like(s, unit)
+            by_inertia = by_angle * (unit * s.conj()).imag / np.abs(s) ** 2
+            follows = both.motion(inner.force(moved) + by_inertia)
+            press = inner.force(moved - follows)
+            weights += [press.real, press.imag]
+        small = np.concatenate(weights, axis=-1) @ self._products
+        out = np.zeros((*small.shape[:-1], 6, 6))
+        out[..., np.array(FELT)[:, None], np.array(FELT)] = small.reshape(*small.shape[:-1], 5, 5)
         return out
 
     def contacts(self, motion: np.ndarray) -> Contacts:
         """Return loads and angles at the inner ring, pressures at both."""
-        s, o = self._settled(motion)
-        i = s - o
-        (inner, _), (outer, _) = self._grooves()
-        q_i, q_o = self._forces(s, o)
-        load, outer_load = np.linalg.norm(q_i, axis=-1), np.linalg.norm(q_o, axis=-1)
-        angle = np.where(load > 0, np.arctan2(i[..., 1], i[..., 0]), np.nan)
+        balls = self._settled(motion)
+        load, outer_load = np.moveaxis(np.abs(balls.force), -2, 0)
+        angle = np.where(load > 0, np.angle(balls.between[..., 0, :]), np.nan)
+        inner, outer = self.row.rings
         return Contacts(
             self.row.azimuth,
             load,
@@ -197,32 +257,11 @@ class SpinningBalls:
         )
 
 
-def _moved(o: np.ndarray, step: np.ndarray) -> np.ndarray:
-    """Return a ball's centre moved around and across the groove: a straight step would leave the
-    groove.
+def _moved(balls: _Pressed, step: np.ndarray) -> np.ndarray:
+    """Return centres o of balls moved around and across the outer groove: a straight step would
+    leave the groove.
     """
-    length = np.linalg.norm(o, axis=-1, keepdims=True)
-    normal = o / length
-    across = np.stack([-normal[..., 1], normal[..., 0]], axis=-1)
-    angle = (step * across).sum(axis=-1, keepdims=True) / length
-    direction = np.cos(angle) * normal + np.sin(angle) * across
-    return (length + (step * normal).sum(axis=-1, keepdims=True)) * direction
-
-
-def _force(between: np.ndarray, constant: float, free: float) -> np.ndarray:
-    """Return the force (..., 2) along the vector between two centres."""
-    length = np.sqrt((between**2).sum(axis=-1))
-    press = constant * np.maximum(length - free, 0.0) ** POINT_POWER
-    return (press / length)[..., None] * between
-
-
-def _contact(between: np.ndarray, constant: float, free: float, nearly: float):
-    """Return the force (..., 2) along the vector between two centres, and the derivative."""
-    length = np.linalg.norm(between, axis=-1)
-    normal = between / length[..., None]
-    press = constant * np.maximum(length - free, 0.0) ** POINT_POWER
-    slope = POINT_POWER * constant * np.sqrt(np.maximum(length - free + nearly, 0.0))
-    along = normal[..., :, None] * normal[..., None, :]
-    across = np.eye(2) - along
-    stiffness = slope[..., None, None] * along + (press / length)[..., None, None] * across
-    return press[..., None] * normal, stiffness
+    length = balls.length[..., 1, :]
+    normal = balls.between[..., 1, :] / length
+    along = step * normal.conj()
+    return (length + along.real) * normal * np.exp(1j * along.imag / length)

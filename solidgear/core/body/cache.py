@@ -55,10 +55,17 @@ class LastTwo(Generic[T]):
     ['A', 'B', 'A', 'C']
     >>> on_springs.on("c", lambda: "made again"), on_springs.on("a", lambda: "made again")
     ('C', 'made again')
+    >>> on_springs.latest
+    'made again'
     """
 
     def __init__(self) -> None:
         self._things: dict[Hashable, T] = {}
+
+    @property
+    def latest(self) -> T | None:
+        """The thing that was made last; None before there is one."""
+        return next(reversed(self._things.values()), None)
 
     def on(self, key: Hashable, make: Callable[[], T]) -> T:
         """Return the thing on some springs, made where these are new, in the place of the oldest."""

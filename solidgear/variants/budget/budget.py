@@ -440,7 +440,9 @@ class Points:
         self.lost: dict[str, None] = {}  #: names of bearings that carried nothing at a point
         self._beams: dict[tuple, Body] = {}
         self._first: NamedShapes | None = None
-        self._settled: Equilibrium | None = None  #: at the first point, where others begin
+        self._usual: Equilibrium | None = None  #: with all inputs as usual
+        #: with each input alone elsewhere, by its place
+        self._alone: list[dict[float, Equilibrium]] = [{} for _ in inputs]
 
     def with_data(self, bearing: str, **known: Any) -> Points:
         """Return the same points of a scene in which more catalogue data of a bearing are known."""
@@ -452,6 +454,7 @@ class Points:
             for b in self.scene.bearings
         )
         out.scene = self.scene.with_changes(bearings=bearings)
+        out._alone = [{**states} for states in self._alone]
         return out
 
     @property
@@ -474,11 +477,10 @@ class Points:
             if key not in self._beams:
                 self._beams = {key: build(scene.plain, SHAFT)}
             beam = self._beams[key]
-        rest = solved(
-            scene, beam if wants_equilibrium(scene) else None, _choice(values), self._settled
-        )
-        # places in the ranges are near one another
-        self._settled = self._settled or rest.equilibrium
+        on_beam = beam if wants_equilibrium(scene) else None
+        rest = solved(scene, on_beam, _choice(values), self._near(place))
+        if rest.equilibrium is not None:
+            self._keep(place, rest.equilibrium)
         for name, made in rest.made.items():
             if not made.bearing.load(rest.motion[name]).any():
                 self.lost[name] = None
@@ -490,6 +492,25 @@ class Points:
         e = values.get("material.E", 1.0)
         numbers = self._measured(self.body, _softer(rest.scene, e), frequencies=False)
         return {q: v * e if q.kind == STIFFNESS else v / e for q, v in numbers.items()}
+
+    def _near(self, place: Sequence[float]) -> Equilibrium | None:
+        """Return where the search for the equilibrium at a point begins: at the usual point, and as
+        far on as the nearest place of each input moved it alone; None before there is one.
+        """
+        if self._usual is None:
+            return None
+        known = zip(self._alone, place)
+        nearest = [states[min(states, key=lambda at: abs(at - x))] for states, x in known]
+        return self._usual.moved_by(nearest)
+
+    def _keep(self, place: Sequence[float], equilibrium: Equilibrium) -> None:
+        """Keep the equilibrium at a point at which one input at most is not as usual."""
+        moved = [k for k, x in enumerate(place) if x != self.inputs[k].usual]
+        if not moved:
+            self._usual = equilibrium
+        if len(moved) <= 1:
+            for k in moved or range(len(place)):
+                self._alone[k][place[k]] = equilibrium
 
     def _measured(self, body: Body, scene: Scene, frequencies: bool) -> dict[Quantity, float]:
         main, *further = (condense(body, scene, port.name) for port in scene.ports)
