@@ -212,7 +212,7 @@ def test_a_cell_at_two_corners_is_cut_towards_the_sharper_one_first():
     scene = climbed("step")[0]
     mesh = Meshed()
     body = sg.build(scene, "harmonic", **mesh.options())
-    corners = Corners(scene, body, np.full(body.mesh["cells"], 1e-3))
+    corners = Corners(scene, body, np.full(body.mesh["cells"], 1e-3), 3)
     sharp, _ = corners.worst()
     assert corners.exponents[sharp] == min(corners.exponents.values())
     before = corners.left.sum()

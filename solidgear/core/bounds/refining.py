@@ -2,7 +2,8 @@
 
 The first mesh has one cell a band and strip and no cut at all. Where the local problems show that a
 corner decides the error bar, the cells around it are cut towards it, as often as theory says that
-it takes: a cut of ratio q leaves the share ``q^(2 a)`` of the cost of a corner of exponent a. The
+it takes: a cut of ratio q leaves the share ``q^(2 a)`` of the cost of a corner of exponent a, and
+orders from p to p + k leave ``(p / (p + k))^(4 a)`` of it (Szabo and Babuska 1991, ch. 10). The
 error away from corners falls with the order of the elements.
 """
 
@@ -35,6 +36,9 @@ AIM = 0.7
 #: cells beside a corner that was cut leave about this share of its cost before, and an order more a
 #: ninth of the remaining error: neither decides an error bar, both how many meshes are tried
 BY_CUT, BY_ORDER = 0.08, 9.0
+#: largest power of the order in what it leaves of the cost of a corner: beyond it cells as large as those
+#: of a first mesh are not yet near enough
+POWER = 2.0
 #: share of what is aimed at that the error away from corners may take before orders are raised
 SMOOTH = 1 / 3
 #: cuts that one step may add to a corner, orders to the mesh, and cuts of a corner in all
@@ -77,9 +81,12 @@ class Meshed:
 
 
 class Corners:
-    """Corners of a mesh and what cells beside them leave of a result while these are being cut."""
+    """Corners of a mesh and what cells beside them leave of a result while these are being cut and the
+    order is raised.
+    """
 
-    def __init__(self, scene: Scene, body: Body, score: np.ndarray):
+    def __init__(self, scene: Scene, body: Body, score: np.ndarray, order: int):
+        self._order, self._raised = order, 0
         cells = body.geometry.meridian.cells  # type: ignore[union-attr]
         corners = richer_space(coned(scene), body).corners
         self.exponents = {v: corner_strength(*corner) for v, corner in corners.items()}
@@ -88,7 +95,6 @@ class Corners:
         self.away = np.where(at_corner, 0.0, score)  #: (ne,) what cells away from corners leave
         self.near = score - self.away  #: (ne,) what cells beside corners leave without any cut
         self.cuts = dict.fromkeys(corners, 0)
-        self._left = {v: 1.0 for v in corners}
         self._sharpest = np.full(len(score), np.inf)
         for vertex, around in self.beside.items():
             self._sharpest[around] = np.minimum(self._sharpest[around], self.exponents[vertex])
@@ -99,11 +105,15 @@ class Corners:
         return np.max([np.zeros(len(self.near)), *map(self._beside, self.exponents)], axis=0)
 
     def _beside(self, vertex: int) -> np.ndarray:
-        """Return (ne,) what cells beside one corner leave by it: beside a sharper one no more than if
-        they had been cut once.
+        """Return (ne,) what cells beside one corner leave by it: beside a sharper one between all, and as
+        much as if they had been cut once.
         """
-        dull = CUT_RATIO ** (2 * (self.exponents[vertex] - self._sharpest))
-        return np.where(self.beside[vertex], self._left[vertex] * dull, 0.0) * self.near
+        exponent = self.exponents[vertex]
+        cut = CUT_RATIO ** (2 * exponent * self.cuts[vertex])
+        by_order = self._order / (self._order + self._raised)
+        left = cut * by_order ** min(4 * exponent, POWER)
+        dull = CUT_RATIO ** (exponent - self._sharpest)
+        return np.where(self.beside[vertex], left * dull, 0.0) * self.near
 
     def worst(self) -> tuple[int | None, float]:
         """Return the corner that leaves most and may still be cut, and how much it leaves; None where all
@@ -120,7 +130,10 @@ class Corners:
     def cut(self, vertex: int) -> None:
         """Cut the cells beside a corner once more."""
         self.cuts[vertex] += 1
-        self._left[vertex] *= CUT_RATIO ** (2 * self.exponents[vertex])
+
+    def raise_order(self) -> None:
+        """Raise the order of the mesh by one."""
+        self._raised += 1
 
     def smooth(self) -> float:
         """Return what an order more reduces: the error away from corners and beside those cut."""
@@ -136,13 +149,14 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
     """
     mesh_of = body.geometry
     lines = Lines(mesh_of.uncut, mesh.across)  # type: ignore[union-attr]
-    corners, orders = Corners(scene, body, score), 0
+    corners, orders = Corners(scene, body, score, mesh.order), 0
     rate, cure = _rate(mesh, corners.smooth())
     aim, most_orders = AIM * tol, min(ORDERS, HIGHEST - mesh.order) if cure else 0
     while (smooth := corners.smooth() / rate**orders) + corners.left.sum() > aim:
         vertex, leaves = corners.worst()
         if orders < most_orders and (vertex is None or smooth > SMOOTH * aim):
             orders += 1
+            corners.raise_order()
         elif vertex is not None and (smooth <= SMOOTH * aim or leaves >= smooth):
             corners.cut(vertex)
         else:
