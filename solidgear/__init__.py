@@ -38,8 +38,8 @@ first used, so that importing the package stays cheap; ``__init__.pyi`` lists th
 
 from __future__ import annotations
 
-import ast
 import importlib
+from functools import cache
 from pathlib import Path
 
 import solidgear.rooms  # noqa: F401  # what features add to the core
@@ -48,15 +48,14 @@ from solidgear.core.machine.version import VERSION
 __version__ = VERSION
 
 
+@cache
 def _listed() -> dict[str, str]:
     """Return the module of every name, from the list that type checkers read."""
+    import ast  # start-up: no command reads the list
+
     stub = ast.parse(Path(__file__).with_suffix(".pyi").read_text(encoding="utf-8"))
     lines = [line for line in stub.body if isinstance(line, ast.ImportFrom)]
     return {alias.name: str(line.module) for line in lines for alias in line.names}
-
-
-_WHERE = _listed()
-__all__ = sorted([*_WHERE, "__version__"])
 
 
 class _NoSuch(AttributeError):
@@ -66,16 +65,21 @@ class _NoSuch(AttributeError):
         from solidgear.core.errors import nearest  # start-up: for this alone
 
         (name,) = self.args
-        return f"module 'solidgear' has no attribute {name!r}{nearest(name, _WHERE)}"
+        return f"module 'solidgear' has no attribute {name!r}{nearest(name, _listed())}"
 
 
 def __getattr__(name: str):
-    if name not in _WHERE:
+    if name.startswith("__") and name != "__all__":
+        raise _NoSuch(name)  # such as Python itself asks for
+    where = _listed()
+    if name == "__all__":
+        return sorted([*where, "__version__"])
+    if name not in where:
         raise _NoSuch(name)
-    value = getattr(importlib.import_module(_WHERE[name]), name)
+    value = getattr(importlib.import_module(where[name]), name)
     globals()[name] = value
     return value
 
 
 def __dir__() -> list[str]:
-    return sorted({*__all__, *(name for name in globals() if name.startswith("__"))})
+    return sorted({*__getattr__("__all__"), *(name for name in globals() if name.startswith("__"))})

@@ -156,7 +156,7 @@ def test_modes_of_all_models_are_listed_once(drawable):
 
 def test_a_page_stays_small_and_alone(drawable, monkeypatch):
     models = [turned(*drawable(kind)) for kind in KINDS]
-    page = viewer.viewer_page(models, "three models")
+    page = viewer.Turning(tuple(models), "three models").page()
     assert len(page) < 200_000
     assert not re.search(r"(src|href)=|https?://|import\(|fetch\(", page)
     assert [m["title"] for m in told(page)["models"]] == [*KINDS]

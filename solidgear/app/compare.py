@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -172,7 +173,7 @@ def compare(
     def study(progress: Progress) -> Sheet:
         with held(out), Drawing() as drawing:
             pictures = Pictures(drawing, out)
-            solved = pictures.begin_early if renders else nothing
+            solved = partial(pictures.begin_early, loaded) if renders else nothing
             comparison = compared(loaded, names, settings=chosen, progress=progress, solved=solved)
             comparison.began = BEGUN  # imports and reading count as well
             complete = comparison.record.complete

@@ -45,8 +45,8 @@ def mesh_of(surface: Surface) -> Mesh:
     """
     triangles = _triangles(surface)
     piece, edges = _creased(surface.points, triangles)
-    _, first = np.unique(piece, return_index=True)
-    source = triangles.ravel()[first]
+    source = np.empty(piece.max() + 1, int)
+    source[piece] = triangles.ravel()  # all corners of a piece are at one point
     order = _along_meridians(surface.points[source])
     number = np.argsort(order)
     rows = number[piece].reshape(-1, 3)
@@ -65,8 +65,12 @@ def _triangles(surface: Surface) -> np.ndarray:
     corners = np.sort(triangles, axis=1)
     flat = (np.diff(corners, axis=1) == 0).any(axis=1)
     # Where two bodies are welded face to face, neither face is of the surface.
-    _, back, count = np.unique(corners, axis=0, return_inverse=True, return_counts=True)
-    return triangles[~flat & (count[back.ravel()] == 1)]
+    place = (corners[:, 0] * len(points) + corners[:, 1]) * len(points) + corners[:, 2]
+    order = np.argsort(place)
+    again = np.flatnonzero(np.diff(place[order]) == 0)
+    twin = np.zeros(len(place), bool)
+    twin[order[again]] = twin[order[again + 1]] = True
+    return triangles[~flat & ~twin]
 
 
 def _pairs(points: np.ndarray, near: float) -> Iterator[tuple[np.ndarray, np.ndarray]]:
@@ -140,4 +144,4 @@ def packed(values: np.ndarray, step: float = 1) -> str:
     counts = (2 * np.abs(steps) - (steps < 0)).astype("<u4")
     # All low bytes first: they differ, and the others seldom do.
     planes = counts.view(np.uint8).reshape(-1, 4).T
-    return base64.b64encode(zlib.compress(planes.tobytes(), 9)).decode()
+    return base64.b64encode(zlib.compress(planes.tobytes())).decode()

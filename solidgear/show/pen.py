@@ -21,13 +21,14 @@ LEAD = 2.0
 #: of several lines, but of ``middle`` and ``bottom`` of all
 BASELINES = {"top": 0.79, "middle": 0.3, "first": 0.3, "bottom": -0.21, "alphabetic": 0.0}
 ANCHORS = {"left": "start", "center": "middle", "right": "end"}
-ESCAPES = {"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#xA;"}
+ESCAPES = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#xA;"})
+#: characters that no SVG may hold
+UNFIT = re.compile(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]")
 
 
 def escaped(text: str) -> str:
     """Return a text as it stands in an SVG; without characters that none may hold."""
-    text = re.sub(r"[^\t\n\r\x20-\ud7ff\ue000-\ufffd\U00010000-\U0010ffff]", "\ufffd", text)
-    return re.sub(r'[&<>"\n]', lambda match: ESCAPES[match[0]], text)
+    return UNFIT.sub("\ufffd", text).translate(ESCAPES)
 
 
 def short(value: float) -> str:

@@ -12,8 +12,9 @@ import os
 import re
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -63,7 +64,22 @@ class Turning:
         SolidgearError
             If the file cannot be written.
         """
-        return write_page(path, viewer_page(self.models, self.title, still=still, first=self.first))
+        return write_page(path, self.page(still))
+
+    def page(self, still: str = "") -> str:
+        """Return the page as text; `still` as in :meth:`write`."""
+        from markupsafe import Markup
+
+        return template("viewer_page.html").render(
+            title=self.title or "Mode shapes", viewer=Markup(_filled(self.packed, still))
+        )
+
+    @cached_property
+    def packed(self) -> Packed:
+        """The models as the script takes them: nearly all the work of a page, to be done while its
+        picture is drawn.
+        """
+        return _packed(self.models, self.first)
 
     def __repr__(self) -> str:
         titles = ", ".join(f"{m.title} ({len(m.shapes)} modes)" for m in self.models)
@@ -73,7 +89,7 @@ class Turning:
         from html import escape
 
         # A frame of its own: a notebook strips scripts from what is not one.
-        page = escape(viewer_page(self.models, self.title, first=self.first), quote=True)
+        page = escape(self.page(), quote=True)
         return f'<iframe srcdoc="{page}" style="width:100%;height:640px;border:0"></iframe>'
 
 
@@ -113,12 +129,22 @@ def turn(body: Body, modes: ModeSet, *others: tuple[Body, ModeSet]) -> Turning:
     return Turning(tuple(models))
 
 
+class Packed(NamedTuple):
+    """Models as the script of a viewer takes them, and what stands around it."""
+
+    data: str  #: JSON
+    titles: list[str]  #: of models
+    modes: list[str]
+
+
 def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "") -> str:
     """Return markup, style, script and data of a viewer, without models past ``BUDGET`` but the
     first.
     """
-    from markupsafe import Markup
+    return _filled(_packed(models, first), still)
 
+
+def _packed(models: Sequence[Turned], first: str) -> Packed:
     drawn = list(_within_budget(models))
     models = models[: len(drawn)]
     modes = picks(models)
@@ -130,31 +156,25 @@ def viewer_fragment(models: Sequence[Turned], *, still: str = "", first: str = "
     }
     # "</script" must not end the script that holds the data.
     data = json.dumps(payload, allow_nan=False).replace("<", "\\u003c")
+    return Packed(data, [model.title for model in models], [mode["name"] for mode in modes])
+
+
+def _filled(packed: Packed, still: str) -> str:
+    from markupsafe import Markup
+
     markup = template("viewer.html").render(
-        data=Markup(data),
+        data=Markup(packed.data),
         script=Markup((Path(__file__).parent / "viewer.js").read_text(encoding="utf-8")),
         still=still,
-        titles=[model.title for model in models],
-        modes=[mode["name"] for mode in modes],
+        titles=packed.titles,
+        modes=packed.modes,
         ramp=", ".join(MOTION),
     )
     return f"{START}\n{markup}\n{END}"
 
 
-def viewer_page(
-    models: Sequence[Turned], title: str = "", *, still: str = "", first: str = ""
-) -> str:
-    """Return the viewer alone as a page; parameters as those of :func:`viewer_fragment`."""
-    from markupsafe import Markup
-
-    fragment = viewer_fragment(models, still=still, first=first)
-    return template("viewer_page.html").render(
-        title=title or "Mode shapes", viewer=Markup(fragment)
-    )
-
-
 def fragment_of(page: str | os.PathLike, *, still: bool = True) -> str:
-    """Return the viewer in a page of :func:`viewer_page`, without its still picture; empty if
+    """Return the viewer in a page of :class:`Turning`, without its still picture; empty if
     there is none.
     """
     try:

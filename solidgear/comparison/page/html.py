@@ -65,7 +65,7 @@ def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str
     viewer = ""
     if TURNED in (record.files or ()):
         viewer = fragment_of(folder / TURNED, still=not any(uri for _, uri in pictures.values()))
-    return template("report.html", Path(__file__).parent).render(
+    return page_template().render(
         record=record,
         customer=Contents(),
         appendix=Contents("A{}"),
@@ -117,6 +117,11 @@ def render_page(record: Record, folder: Path, drawn: Drawn | None = None) -> str
         environment=pairs_of(record.environment, "Environment of the run"),
         mesh=tables.mesh(record),
     )
+
+
+def page_template() -> Any:
+    """Return the template of the page, which is compiled at the first call."""
+    return template("report.html", Path(__file__).parent)
 
 
 def _in_solid(record: Record) -> str:

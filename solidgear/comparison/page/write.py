@@ -5,13 +5,14 @@ from __future__ import annotations
 import contextlib
 import os
 import time
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Mapping
 from functools import partial
 from pathlib import Path
 from typing import TypeVar
 
-from solidgear.comparison.page.html import drawn_charts, write_report
-from solidgear.core import LADDER, ModeSet, Quantity, Record, Solution
+from solidgear.comparison.page.html import drawn_charts, page_template, write_report
+from solidgear.core import LADDER, ModeSet, Quantity, Record, Scene, Solution
+from solidgear.core.judge.where import least_certain
 from solidgear.core.machine.meter import Meter
 from solidgear.core.machine.processes import family_memory
 from solidgear.core.quantity import FIRST_BENDING
@@ -30,18 +31,22 @@ SHEET = "sheet.html"
 
 
 class Pictures:
-    """Pictures of mode shapes, each begun as soon as its model is solved."""
+    """Pictures of mode shapes and of an error bar, each begun as soon as its model is solved."""
 
     def __init__(self, drawing: Drawing, out: str | os.PathLike):
         self.drawing, self.folder = drawing, Path(out)
-        self.jobs: dict[str, RenderJob] = {}  #: by model
+        self.jobs: dict[str, RenderJob] = {}  #: of mode shapes, by model
+        self.error: RenderJob | None = None  #: of the first 3D solid
 
-    def begin_early(self, model: str, solution: Solution) -> None:
-        """Begin the picture of a model while others are being solved; why it failed is told when the
-        report is written.
+    def begin_early(self, scene: Scene, model: str, solution: Solution) -> None:
+        """Begin the pictures of a model while others are being solved; why they failed is told when
+        the report is written.
         """
         with contextlib.suppress(Exception):
             self.begin(model, solution)
+        with contextlib.suppress(Exception):
+            if model != "harmonic" and (quantity := least_certain(scene, solution)):
+                self.begin_error(model, solution, quantity)
 
     def begin(self, model: str, solution: Solution) -> None:
         """Begin the picture of a model, unless it has none or is begun."""
@@ -50,6 +55,20 @@ class Pictures:
             drawn = Drawn(solution.body, solution.modes, LADDER[model].title)
             self.jobs[model] = drawn.job(name, self.folder / f"mode_{model}.png")
             self.drawing.add(self.jobs[model])
+
+    def begin_error(self, model: str, solution: Solution, quantity: Quantity) -> None:
+        """Begin the picture of the cells that an error bar comes from, unless one is begun."""
+        if self.error is None:
+            title = f"{LADDER[model].title}: error bar of {quantity} by cells"
+            path = self.folder / f"error_{model}.png"
+            job = where_surface(solution.body, solution.scores[quantity], title, path)
+            self.drawing.add(job)
+            self.error = job
+
+    @property
+    def all_jobs(self) -> list[RenderJob]:
+        """Those of mode shapes and of the error bar."""
+        return [*self.jobs.values(), *([self.error] if self.error else [])]
 
 
 def write_all(
@@ -88,30 +107,35 @@ def write_all(
         write_json(folder / "results.json", record.as_dict())
         if renders and shapes:
             progress("renders")
-        error_jobs = _error_jobs(record, shapes, folder) if renders else []
         # They are drawn in a process beside this one, which writes and draws the rest meanwhile.
         with contextlib.ExitStack() as stack:
             pictures = pictures or Pictures(stack.enter_context(Drawing()), folder)
             for model, solution in shapes.items() if renders else ():
                 _try(record, f"render of {model}", partial(pictures.begin, model, solution))
-            for drawn_job in pictures.jobs.values():
-                drawn_job.path.unlink(missing_ok=True)  # whoever made it, it must not pass for ours
-            for job in error_jobs:
-                pictures.drawing.add(job)
+            where, shaded = record.where_solid, shapes.get(_shaded(record))
+            if renders and where is not None and shaded is not None:
+                quantity = Quantity(where.quantity)
+                begin = partial(pictures.begin_error, where.model, shaded, quantity)
+                _try(record, "picture of the error bar", begin)
+            for job in pictures.all_jobs:
+                job.path.unlink(missing_ok=True)  # whoever made it, it must not pass for ours
             for model, solution in shapes.items():
                 for output in OUTPUTS:
                     what, target = f"{output.what} of {model}", folder / output.name(model)
                     _try(record, what, partial(output.write, solution, target))
             progress("report")
             drawn = drawn_charts(record, folder)
+            viewer = "viewer of mode shapes"
+            turning = _try(record, viewer, partial(_turning, record, shapes if renders else {}))
+            page_template()  # compiled now
             results = (
                 {result.path: result for result in pictures.drawing.results()} if renders else {}
             )
             _note(record, pictures.jobs, results)
-            _note_error(record, (results[job.path] for job in error_jobs))
-        if renders and shapes:
-            write = partial(_write_turned, record, shapes, folder)
-            _try(record, "viewer of mode shapes", write)
+            if pictures.error is not None and (result := results.get(pictures.error.path)):
+                _note_error(record, result)
+        if turning is not None:
+            _try(record, viewer, partial(_write_turned, turning, record, shapes, folder))
         if sheet and shapes:
             progress("sheet")
             _try(record, "sheet", partial(sheet, folder / SHEET))
@@ -149,27 +173,12 @@ def _shaded(record: Record) -> str:
     return record.where_solid.model if record.where_solid else ""
 
 
-def _error_jobs(record: Record, shapes: dict[str, Solution], folder: Path) -> list[RenderJob]:
-    """Return the picture of the cells that the widest error bar of a 3D solid comes from, if any."""
-    where, solution = record.where_solid, shapes.get(_shaded(record))
-    if where is None or solution is None:
-        return []
-    path = folder / f"error_{where.model}.png"
-    path.unlink(missing_ok=True)
-    by_cells = solution.scores[Quantity(where.quantity)]
-    title = f"{record.name(where.model)}: error bar of {where.quantity} by cells"
-    draw = partial(where_surface, solution.body, by_cells, title, path)
-    job = _try(record, "picture of the error bar", draw)
-    return [] if job is None else [job]
-
-
-def _note_error(record: Record, results: Iterable[RenderResult]) -> None:
+def _note_error(record: Record, result: RenderResult) -> None:
     """Record the picture of an error bar, or why there is none."""
-    for result in results:
-        if result.ok and record.where_solid is not None:
-            record.where_solid.picture = result.path.name
-        else:
-            _leave_out(record, f"picture of the error bar left out: {result.reason}")
+    if result.ok and record.where_solid is not None:
+        record.where_solid.picture = result.path.name
+    else:
+        _leave_out(record, f"picture of the error bar left out: {result.reason}")
 
 
 def _note(
@@ -189,19 +198,32 @@ def _note(
         _leave_out(record, f"render of {', '.join(models)} left out: {reason}")
 
 
-def _write_turned(record: Record, shapes: dict[str, Solution], folder: Path) -> None:
-    """Write the page of mode shapes, the most detailed models first."""
-    still = ""
+def _turning(record: Record, shapes: dict[str, Solution]) -> Turning | None:
+    """Return the page of mode shapes, the most detailed models first; None where nothing moves."""
     models: list[Turned] = []
     for key, solution in reversed(shapes.items()):
-        if solution.body.geometry is None or _drawn_mode(solution.modes) is None:
-            continue
-        models.append(turned(solution.body, solution.modes, record.name(key), models))
-        if not still and key in record.images:
-            still = data_uri(key, folder / record.images[key]) or ""
-    if models:
-        title = record.scene.get("title") or record.scene.get("name") or ""
-        Turning(tuple(models), title).write(folder / TURNED, still=still)
+        if _turns(solution):
+            models.append(turned(solution.body, solution.modes, record.name(key), models))
+    if not models:
+        return None
+    title = record.scene.get("title") or record.scene.get("name") or ""
+    turning = Turning(tuple(models), title)
+    turning.packed  # noqa: B018  # now, while pictures are drawn
+    return turning
+
+
+def _write_turned(
+    turning: Turning, record: Record, shapes: dict[str, Solution], folder: Path
+) -> None:
+    """Write the page of mode shapes with the picture of the first model that has one."""
+    keys = [key for key in reversed(shapes) if key in record.images and _turns(shapes[key])]
+    stills = (data_uri(key, folder / record.images[key]) for key in keys)
+    turning.write(folder / TURNED, still=next(filter(None, stills), ""))
+
+
+def _turns(solution: Solution) -> bool:
+    """Return whether a model has a shape to be turned."""
+    return solution.body.geometry is not None and _drawn_mode(solution.modes) is not None
 
 
 def _drawn_mode(modes: ModeSet) -> str | None:

@@ -17,6 +17,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -315,8 +316,12 @@ class BeamLine:
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Return the profile of the shaft, each section of it a rigid disc."""
-        rings = _profile(self.shaft, self.nodes)
-        return revolve(rings, _waves(rings, self.nodes, moved))
+        return revolve(self.rings, _waves(self.rings, self.nodes, moved))
+
+    @cached_property
+    def rings(self) -> Rings:
+        """The profile of the shaft, for all its shapes."""
+        return _profile(self.shaft, self.nodes)
 
     def volume(self) -> None:
         """Return None: a beam has no mesh of the volume."""

@@ -12,7 +12,7 @@ import scipy.sparse as sp
 from skfem import Element, ElementQuad1, ElementQuad2, MeshQuad1
 from skfem.element import ElementQuadP
 
-from solidgear.core.body.revolution import Rings, Wave, revolve, ring_of, wave
+from solidgear.core.body.revolution import Rings, Wave, revolve, wave
 from solidgear.core.body.surface import PIECES, Surface
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.assembly import reference, unknowns
@@ -73,24 +73,25 @@ class HarmonicMesh:
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Return the outline of the meridian turned around the axis."""
-        rings, on_rings = self._rings()
+        rings, on_rings = self.rings
         fields = {name: self.whole(family_of(name), u) for name, u in moved.items()}
         return revolve(rings, [_wave(name, rings, (on_rings @ u).T) for name, u in fields.items()])
 
     def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
         """Return the displacements (3 k, n) of points of the surface by the unknowns of a block."""
-        rings, on_rings = self._rings()
+        rings, on_rings = self.rings
         free = family_of(name).free(self.on_axis)
         moved = []
         for unit in np.eye(free.shape[1]):
             amplitude = np.broadcast_to(unit[:, None], (len(unit), len(rings.r)))
             moved.append(revolve(rings, [_wave(name, rings, amplitude)]).displacement[chosen])
-        values = on_rings[ring_of(rings)[chosen]].toarray()
+        values = on_rings[rings.ring[chosen]].toarray()
         rows = np.einsum("ckx,kj->kxjc", moved, values).reshape(3 * len(chosen), -1)
         return rows[:, free.ravel()]
 
-    def _rings(self) -> tuple[Rings, sp.csr_matrix]:
-        """Return the circles of the outline, and a scalar field on them by its unknowns; inside an edge
+    @cached_property
+    def rings(self) -> tuple[Rings, sp.csr_matrix]:
+        """The circles of the outline, and a scalar field on them by its unknowns; inside an edge
         the basis itself is evaluated, whatever the order.
         """
         points, cells, dofs = self.meridian.points, self.meridian.cells, self.dofs
