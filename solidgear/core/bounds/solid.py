@@ -43,6 +43,7 @@ from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import NoBounds
 from solidgear.core.kernel.room import MB
 from solidgear.core.machine.memory import NoRoom, require
+from solidgear.core.machine.processes import give_back
 from solidgear.core.meshing.corners import SHOULDER, is_notched
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.models.solid.seat_faces import Seats
@@ -449,6 +450,7 @@ def _enriched(body: Body, index: int) -> EnrichedBlock:
                 more = enrich()
             except NoRoom as error:
                 raise error.of_model(f"error bars of the {body.fidelity} model", COARSER) from None
+            give_back()
         kept[index] = enriched_block(block, more)
     return kept[index]
 

@@ -247,6 +247,7 @@ class Addition:
             first=len(m.dofs),
         )
         coupling, own = stiffness.divided(n)
+        del stiffness  # as large as both
         between, _ = mass.divided(n)
         return cls(m, further, numbers, signs, own, coupling, between, summed, images)
 
