@@ -27,9 +27,9 @@ pytestmark = pytest.mark.usefixtures("no_charts")
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: those that have something to say of a shaft without features
 FIDELITIES = LADDER.fit(sg.load(GEOMETRY / "pinion_overhung.toml"))
-LIGHT = {"solid": {"refinement": 0.35}, "harmonic": {"order": 4, "layers": 1}}
+LIGHT = {"solid": {"refinement": 0.25}, "harmonic": {"order": 3, "layers": 1}}
 #: where only the way of what is found matters
-LIGHTEST = {"solid": {"refinement": 0.35}, "harmonic": {"order": 3, "layers": 0}}
+LIGHTEST = {"solid": {"refinement": 0.2}, "harmonic": {"order": 2, "layers": 0}}
 ORDER = ["x", "y", "z", "thx", "thy", "thz"]
 JUDGE = "harmonic"
 
@@ -400,7 +400,7 @@ def test_bar_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
 
     monkeypatch.setattr("solidgear.core.judge.study.bounded", broken)
     found = compare(
-        overhung, ("solid",), settings={"solid": {"element": "tet10", "refinement": 0.4}}
+        overhung, ("solid",), settings=LIGHTEST
     ).results
     assert found["models"]["solid"]["band"] is None
     assert "3D solid: error bar: the mesh holds very slender cells" in found["cautions"]
