@@ -23,8 +23,8 @@ FREE = str(ROOT / "geometry" / "cylinder_free.toml")
 LIGHT = {
     "euler": [],
     "timoshenko": [],
-    "harmonic": ["--set", "order=3", "--set", "layers=1"],
-    "solid": ["--set", "refinement=0.35"],
+    "harmonic": ["--set", "order=3", "--set", "layers=0"],
+    "solid": ["--set", "refinement=0.25"],
 }
 HARMONIC = ["-f", "harmonic"]
 FIXED = [*HARMONIC, *LIGHT["harmonic"]]
@@ -433,7 +433,7 @@ UNUSED = """
 RUN = {
     "answer {scene} --tol 0.1": "comparison core.bounds.solid core.judge.record core.judge.where "
     "core.models.solid cuts.features guards show.render",
-    "modes {scene} -f harmonic --set order=3 --set layers=1": "comparison core.bounds.solid "
+    "modes {scene} -f harmonic --set order=2 --set layers=0": "comparison core.bounds.solid "
     "core.meshing.tetrahedra core.models.solid cuts.features show.render",
     "check {scene}": "comparison core.bounds.solid cuts.features show.render",
 }
