@@ -399,9 +399,7 @@ def test_bar_that_cannot_be_made_is_a_warning(overhung, monkeypatch):
         raise NoBounds("the mesh holds very slender cells")
 
     monkeypatch.setattr("solidgear.core.judge.study.bounded", broken)
-    found = compare(
-        overhung, ("solid",), settings=LIGHTEST
-    ).results
+    found = compare(overhung, ("solid",), settings=LIGHTEST).results
     assert found["models"]["solid"]["band"] is None
     assert "3D solid: error bar: the mesh holds very slender cells" in found["cautions"]
     assert "no error bar (the mesh holds very slender cells)" in found["verdict"]["sentences"][0]

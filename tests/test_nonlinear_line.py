@@ -92,10 +92,10 @@ def moves_as_written_out(point, damper):
         written_out(w, damper),
         (0.0, period),
         begin,
-        rtol=1e-9,
-        atol=1e-11,
+        rtol=1e-7,
+        atol=1e-9,
         t_eval=times,
-        max_step=period / 100,
+        max_step=period / 50,
     ).y
     e = ERROR * np.cos(w * times) - 0.4 * ERROR * np.sin(2 * w * times)
     # harmonics are followed to 1e-4 of the largest

@@ -486,7 +486,9 @@ def test_the_command_writes_all_or_nothing(tmp_path):
     [
         pytest.param(helical, ("system-modes --tol 0.2", "contact"), marks=pytest.mark.long),
         *(
-            pytest.param(box, ("check", "system-modes", "deflect", "contact"), marks=pytest.mark.slow)
+            pytest.param(
+                box, ("check", "system-modes", "deflect", "contact"), marks=pytest.mark.slow
+            )
             for box in (helical, planetary)
         ),
     ],

@@ -32,7 +32,7 @@ FREE = str(ROOT / "geometry" / "cylinder_free.toml")
 #: the same system, factored again
 ROUNDING = 1e-9
 #: layers towards all corners, and what such a mesh errs by itself
-FINE = {"order": 5, "layers": 3, "edge_layers": 2, "relative_size": 4.0}
+FINE = {"order": 5, "layers": 2, "edge_layers": 1, "relative_size": 4.0}
 REFERENCE = 5e-5
 
 

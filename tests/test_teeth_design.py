@@ -35,6 +35,8 @@ from solidgear.variants.sweep.file_task import BARS
 from solidgear.variants.sweep.sheet import sweep_table
 from solidgear.variants.sweep.train_task import train_task
 
+pytestmark = pytest.mark.usefixtures("coarse_teeth")
+
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 GEARBOX, AXLE = GEOMETRY / "gearbox_train.toml", GEOMETRY / "axle_overhung.toml"
 BEAMS = {"pinion": "timoshenko", "gear": "timoshenko"}
