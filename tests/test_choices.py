@@ -171,7 +171,7 @@ def test_the_command_draws_a_front(tmp_path):
     "name",
     [
         "lists alone, two goals",
-        pytest.param("span", marks=pytest.mark.long),
+        pytest.param("span", marks=pytest.mark.slow),
         pytest.param("two limits", marks=pytest.mark.slow),
     ],
 )

@@ -81,13 +81,13 @@ OF_TRAIN = {
 
 #: a second and more each
 DEAR = {
-    *("answer", "sweep", "optimise", "stress", "deflect", "response", "receptance"),
-    *("sweep of a train", "a shaft of it", "bearing of a train"),
+    *("answer", "sweep", "stress", "response"),
+    *("sweep of a train", "a shaft of it"),
 }
 
 
 #: many seconds: studies beside it guard the way of files, and other tests the study
-DEAREST = {"compare"}
+DEAREST = {"compare", "optimise", "deflect", "receptance", "bearing of a train"}
 
 
 def mark_of(names):

@@ -250,7 +250,7 @@ def test_a_study_keeps_where_its_widest_bar_sits():
     assert recorded_places(scene, solution) is None
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_corrected_solid_has_its_error_at_the_cut_that_corrects_it(tmp_path):
     scene = shaft(0.046, (keyway(0.012),))
     error_map = map_error(scene, Quantity("torsion 1"), {"refinement": 0.3}, "corrected")
