@@ -27,7 +27,7 @@ from validation.shipped import GEOMETRY
 
 #: a mesh of hexahedra of one layer at shoulders and none at the ends of seats, and of tetrahedra
 HEX = {"layers": 1, "radial_layers": 1, "edge_layers": 0, "relative_size": 2.0, "around": 8}
-TET = {"element": "tet10", "refinement": 0.3}
+TET = {"element": "tet10", "refinement": 0.2}
 #: m; height of an L bracket, and thickness of both of its arms
 TALL, THICK = 0.03, 0.01
 HELD = """
