@@ -45,10 +45,7 @@ def apart(body):
     return replace(body, blocks=(whole,), cache=Cache())
 
 
-@pytest.mark.parametrize(
-    ("around", "tie"),
-    [(8, "average"), pytest.param(12, "average", marks=pytest.mark.slow), (8, "rigid")],
-)
+@pytest.mark.parametrize(("around", "tie"), [(8, "average"), (12, "average"), (8, "rigid")])
 def test_a_part_of_the_mesh_has_the_energies_of_all(around, tie, monkeypatch):
     monkeypatch.setattr(bounds_solid, "MISSING", 1e-5)
     body = sg.build(short(tie), "solid", element="hex20", around=around, **MESH)
