@@ -132,7 +132,7 @@ def test_a_turning_line_alone_makes_motions_grow_where_hill_says():
     assert all(abs(growth(own, w)) < 1 + 1e-6 for w in outside)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_multipliers_of_a_turning_line_are_how_motions_beside_it_fade(loose):
     own, size = loose.balance.remainder, 1e-6
     run = Integrated(own, loose.omega, 1, 1e-11)
