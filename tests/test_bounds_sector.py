@@ -92,8 +92,8 @@ def small_residuals(monkeypatch):
     [
         pytest.param("straight", True, marks=pytest.mark.slow),
         pytest.param("straight", False, marks=pytest.mark.slow),
-        ("spiral", False),
-        ("rigid", True),
+        pytest.param("spiral", False, marks=pytest.mark.long),
+        pytest.param("rigid", True, marks=pytest.mark.long),
         pytest.param("rigid", False, marks=pytest.mark.slow),
     ],
 )

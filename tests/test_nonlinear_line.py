@@ -71,6 +71,7 @@ def loose():
     return point
 
 
+@pytest.mark.long
 def test_teeth_whose_line_turns_move_as_the_equations_written_out(loose):
     moves_as_written_out(loose, 0.0)
 

@@ -296,6 +296,7 @@ def run(*args):
     return CliRunner().invoke(app, [str(a) for a in args])
 
 
+@pytest.mark.long
 def test_the_command(shaft):
     path = GEOMETRY / "intermediate_shaft.toml"
     mesh = ("-f", "harmonic", "--set", "order=2", "--set", "layers=0")

@@ -129,6 +129,7 @@ def test_a_body_that_nothing_holds_has_a_stiffness_of_zero_and_no_bar(run):
 
 
 # --------------------------------------------------------------------------- modes
+@pytest.mark.long
 def test_modes_are_those_of_the_mesh_and_the_first_of_every_family_have_a_bar(run, scene, truth):
     code, out, _ = run("modes", SCENE, "-n", "14", "--tol", "0.01", "--json")
     found = json.loads(out)

@@ -220,6 +220,7 @@ def test_the_torque_of_least_error_grows_with_the_relief(errors):
 RANGE = "pinion.relief.tip+gear.relief.tip=0 um:8 um"
 
 
+@pytest.mark.long
 def test_a_design_of_a_train_is_solved_at_every_point(rows):
     """The file as it is, then a relief; goals choose which numbers are solved."""
     ends = Design((RANGE,), search=True)

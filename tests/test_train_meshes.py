@@ -173,6 +173,7 @@ def test_a_higher_frequency_refines_and_is_not_refused(train):
 
 
 @pytest.mark.parametrize("tol", [5e-3, 5e-4])
+@pytest.mark.long
 def test_gears_at_rest_are_within_the_tolerance(train, fine, tol):
     point = OperatingPoint(torque=80.0)
     assembly = Assembly(train, kept=6, tol=tol)
