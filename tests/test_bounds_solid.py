@@ -198,6 +198,7 @@ def over_error(found, exact):
     return np.array(about), np.array(one_side)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("element", ["tet10", "hex20"])
 def test_bars_hold_and_are_hardly_wider_than_errors(element):
     about, one_side = over_error(judged(stepped(), element, **COARSE[element]), truth())
