@@ -55,11 +55,11 @@ LAWS = {
 }
 
 
-SLOW = {"hertz", "two stiffnesses"}
+LONG = {"hertz", "two stiffnesses"}
 
 
 @pytest.mark.parametrize(
-    "law", [pytest.param(n, marks=pytest.mark.slow if n in SLOW else ()) for n in LAWS]
+    "law", [pytest.param(n, marks=pytest.mark.long if n in LONG else ()) for n in LAWS]
 )
 def test_balance_and_time_agree_on_every_law(law):
     law, depth = LAWS[law]
