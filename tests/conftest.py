@@ -20,6 +20,10 @@ from tests.by_room import belongs, is_room
 
 pin()
 os.environ.setdefault("MKL_NUM_THREADS", "1")
+# Compiled modules are kept, whatever a shell exports: every process that tests start would compile
+# them anew, a second each, and every worker the tests.
+sys.dont_write_bytecode = False
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
 # A shell starts what it runs in the background deaf to Ctrl-C; tests that interrupt themselves
 # would wait for ever.
 signal.signal(signal.SIGINT, signal.default_int_handler)
@@ -260,6 +264,18 @@ def raced():
 
     scene = sg.load(Path(__file__).parent.parent / "geometry" / "shaft_stepped.toml")
     return race(scene, few(), runs=2, sure=1e-2, setup=SETUP)
+
+
+@pytest.fixture(scope="module")
+def coarse_teeth():
+    """Contacts that name no model of their teeth have half the slices and places."""
+    from solidgear.teeth.train_teeth import TeethModel
+
+    usual = TeethModel.__init__.__defaults__
+    quick = (usual[0], TeethModel.slices // 2, TeethModel.positions // 2, *usual[3:])
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(TeethModel.__init__, "__defaults__", quick)
+        yield
 
 
 @pytest.fixture

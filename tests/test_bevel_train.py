@@ -32,7 +32,7 @@ def axle():
 @pytest.fixture(scope="module")
 def solved(axle):
     carried = Carried.at_rest(with_sections(axle), POINT)
-    return bevel_contact(carried, carried.train.pairs[0], (STEEL, STEEL))
+    return bevel_contact(carried, carried.train.pairs[0], (STEEL, STEEL), 16, 8)
 
 
 def test_the_contact_of_an_axle(solved):

@@ -210,7 +210,7 @@ def test_hexahedra_have_it_within_the_gate_and_are_counted():
     assert body.size == LADDER["solid"].size(scene, options).unknowns
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_tetrahedra_fold_nowhere_and_have_it_within_the_gate():
     scene = everywhere()
     body = sg.build(scene, "solid", element="tet10", refinement=0.35)

@@ -119,8 +119,13 @@ def bracket(path, around, between):
     write_boxes(path, [ARM * two, ARM * two, ARM * one], patches, hollow)
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("attachment", ["average", "rigid"])
+@pytest.mark.parametrize(
+    "attachment",
+    [
+        pytest.param("rigid", marks=pytest.mark.long),
+        pytest.param("average", marks=pytest.mark.slow),
+    ],
+)
 def test_bars_of_a_bracket_hold_what_a_graded_mesh_says(tmp_path, attachment):
     bracket(tmp_path / "coarse.msh", 0, 1)
     bracket(tmp_path / "fine.msh", 0, 2)

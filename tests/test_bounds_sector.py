@@ -68,7 +68,7 @@ def entire(name):
 
 def energies(scene, body, names=("axial 1", "bending 1", "torsion 1")):
     """Energies of errors: under unit loads, by cells in sum over that, and of modes."""
-    modes = sg.modes(body, scene, n=8)
+    modes = sg.modes(body, scene, n=6)
     bounds = solid_bounds(scene, body, statics=True, modes=modes, wanted=names)
     forces = np.cos(np.arange(len(bounds.reached)))
     by_cells = bounds.energy_by_cells(forces).sum() / (forces @ bounds.reached @ forces)
@@ -84,7 +84,7 @@ def apart(one, other):
 @pytest.fixture
 def small_residuals(monkeypatch):
     """Conjugate gradients that go on beyond some per cent."""
-    monkeypatch.setattr(bounds_solid, "MISSING", 5e-5)
+    monkeypatch.setattr(bounds_solid, "MISSING", 2e-4)
 
 
 @pytest.mark.parametrize(
@@ -92,8 +92,8 @@ def small_residuals(monkeypatch):
     [
         pytest.param("straight", True, marks=pytest.mark.slow),
         pytest.param("straight", False, marks=pytest.mark.slow),
-        ("spiral", False),
-        ("rigid", True),
+        pytest.param("spiral", False, marks=pytest.mark.long),
+        pytest.param("rigid", True, marks=pytest.mark.long),
         pytest.param("rigid", False, marks=pytest.mark.slow),
     ],
 )

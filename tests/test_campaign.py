@@ -392,11 +392,15 @@ def test_random_shafts_end_to_end(tmp_path):
 
 @pytest.mark.long
 def test_a_resolved_change_goes_the_way_of_its_theorem(monkeypatch):
+    # a bearing that is stiffer by 0.1
+    monkeypatch.setattr(pairs, "between", lambda *_: 0.1)
+    scene = random_scene(2)
+    found = pairs.two_shafts([scene, pairs.changed(scene, 2)[0]])
+    monkeypatch.setattr(pairs, "two_shafts", lambda shafts: found)
     rows = pairs.judged(2).rows
     assert {row.quantity for row in rows} >= {"C_zz", "K_zz", "bending 1"}
     assert all(row.held for row in rows)
-    # a bearing that is stiffer by 0.1, told as one that is softer: every number is on the wrong side
-    monkeypatch.setattr(pairs, "between", lambda *_: 0.1)
+    # told as one that is softer: every number is on the wrong side
     monkeypatch.setattr(
         pairs, "_wrong_way", lambda *given, right=pairs._wrong_way: right(*given[:-1], -given[-1])
     )

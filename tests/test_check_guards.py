@@ -776,8 +776,9 @@ def test_a_thought_is_a_sentence_of_its_own():
     assert thoughts("It holds.") == "It holds."
 
 
-def test_no_model_holds_without_a_word_on_a_shaft_that_is_free():
+def test_no_model_holds_without_a_word_on_a_shaft_that_is_free(monkeypatch):
     """Without an axial spring in either bearing: told of no model, and true of all."""
+    monkeypatch.setattr(check, "GUARDS", {"free_motions": GUARDS["free_motions"]})
     loose = scene(matrices=[stiff(y=0.0), stiff(y=0.0)])
     verdicts = check_scene(loose, sg.build(loose, "euler")).verdicts
     assert verdicts["harmonic"] == check.Verdict("holds with caution", ("free_motions",))
@@ -800,7 +801,7 @@ def test_a_catalogue_bearing_of_which_few_elements_carry_is_not_told_to_give_dig
 
 
 def test_records_are_plain_data(shipped):
-    for found in map(shipped, sorted(OFTEN)):
+    for found in map(shipped, ("pinion_overhung", "pinion_straddle")):
         json.dumps(found.as_dict(), allow_nan=False)
         assert {r.level for r in found.records} <= set(LEVELS)
         assert sorted(found.facts + found.cautions + found.faults) == sorted(
@@ -919,8 +920,9 @@ def test_a_slip_in_all_bearings_is_told_once():
     assert "and 3 more" in notice.sentence
 
 
-def test_the_mass_of_check_counts_rigid_masses():
+def test_the_mass_of_check_counts_rigid_masses(monkeypatch):
     """A disc of 50 kg on a shaft; inertia by the rigid masses of the bodies about one centre."""
+    monkeypatch.setattr(check, "GUARDS", {})  # masses are facts of the scene itself
     bare = scene()
     disc = {"name": "disc", "mass": 50.0, "y": 0.1, "seat_width": 0.02, "inertia": [0.4, 0.8, 0.4]}
     loaded = bare.with_changes(masses=(disc,))

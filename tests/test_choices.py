@@ -170,8 +170,8 @@ def test_the_command_draws_a_front(tmp_path):
 @pytest.mark.parametrize(
     "name",
     [
-        "lists alone, two goals",
-        pytest.param("span", marks=pytest.mark.long),
+        pytest.param("lists alone, two goals", marks=pytest.mark.long),
+        pytest.param("span", marks=pytest.mark.slow),
         pytest.param("two limits", marks=pytest.mark.slow),
     ],
 )

@@ -82,7 +82,7 @@ TRUTH = {
     "torsion 1": (13295.543, 3.2e-4),
     "bending 1": (2784.8856, 2e-6),
 }
-COARSE = {"order": 4, "layers": 2, "edge_layers": 2, "refinement": 0.25, "modes": 8}
+COARSE = {"order": 4, "layers": 1, "edge_layers": 1, "refinement": 0.2, "modes": 8}
 
 
 @pytest.fixture(scope="module")

@@ -47,7 +47,12 @@ def of_whole(made):
 
 @pytest.mark.parametrize(
     "name",
-    ["small hole", "narrow keyway with square ends", "flat", "three that share no plane"],
+    [
+        "small hole",
+        "narrow keyway with square ends",
+        "flat",
+        pytest.param("three that share no plane", marks=pytest.mark.slow),
+    ],
 )
 def test_the_size_is_counted_on_the_mesh_without_what_is_cut(name):
     given = {"refinement": 0.25}

@@ -48,6 +48,8 @@ LONG = {
     "guide/large.md",
     "guide/stiffness.md",
     "guide/sweeps.md",
+    "guide/compare.md",
+    "guide/nonlinear.md",
 }
 
 
@@ -95,14 +97,12 @@ def here(monkeypatch, capfd, no_sudden_end):
 
 #: some seconds each; shorter pages show what these do, commands beside what they print
 SECONDS = {
-    "guide/compare.md",
     "guide/contact.md",
     "guide/frequencies.md",
     "guide/housings.md",
     "guide/planetary.md",
     "guide/points.md",
     "guide/uncertainty.md",
-    "guide/nonlinear.md",
     "guide/stress.md",
 }
 #: code that takes a second and more

@@ -13,6 +13,20 @@ import solidgear as sg
 ROOT = Path(__file__).parent.parent
 PACKAGE = ROOT / "solidgear"
 WITH_EXAMPLES = sorted(p for p in PACKAGE.rglob("*.py") if ">>>" in p.read_text())
+#: a second and a half and more; others show what these do, and the tests of their rooms do the same
+DEAREST = {
+    PACKAGE / name
+    for name in (
+        "trains/judge/study.py",
+        "trains/judge/check.py",
+        "teeth/study.py",
+        "variants/sweep/file_task.py",
+        "variants/optimise/optimise.py",
+        "backlash/train.py",
+        "backlash/nonlinear.py",
+        "parts/body_file.py",
+    )
+}
 #: half a second and more; the tests of their rooms do the same by default
 DEAR = {
     PACKAGE / name
@@ -20,30 +34,23 @@ DEAR = {
         "comparison/two/two_trains.py",
         "core/judge/answer.py",
         "measured/identify.py",
-        "parts/body_file.py",
         "parts/own_mesh.py",
         "strength/deflection/at_rest.py",
         "strength/stress/study.py",
         "teeth/compliance/solid.py",
         "teeth/over_points.py",
         "teeth/pair_contact.py",
-        "teeth/study.py",
         "trains/assembly/meshes.py",
         "trains/judge/check_study.py",
         "trains/response/receptance.py",
         "trains/response/study.py",
-        "variants/optimise/optimise.py",
         "variants/sweep/bearing_task.py",
         "comparison/models.py",
         "strength/stress/shaft.py",
         "variants/sweep/command.py",
-        "variants/sweep/file_task.py",
-        "trains/judge/check.py",
-        "trains/judge/study.py",
-        "backlash/train.py",
-        "backlash/nonlinear.py",
     )
 }
+MARKS = dict.fromkeys(DEAR, pytest.mark.long) | dict.fromkeys(DEAREST, pytest.mark.slow)
 NOUNS = [name for name in sg.__all__ if callable(getattr(sg, name))]
 
 
@@ -61,7 +68,7 @@ def module_of(path):
 
 @pytest.mark.parametrize(
     "path",
-    [pytest.param(p, marks=pytest.mark.long if p in DEAR else ()) for p in WITH_EXAMPLES],
+    [pytest.param(p, marks=MARKS.get(p, ())) for p in WITH_EXAMPLES],
     ids=lambda p: "-".join(p.relative_to(PACKAGE).with_suffix("").parts),
 )
 def test_examples_run(path, monkeypatch):

@@ -151,7 +151,7 @@ def test_what_a_mesh_can_do_it_can_do_with_layers(tie):
     # displacements with fewer layers are some of those with more, so that flexibility grows
     coarse, fine = (
         flexibility(
-            sg.build(stepped(tie), "solid", element="tet10", refinement=0.3, layers=k)
+            sg.build(stepped(tie), "solid", element="tet10", refinement=0.2, layers=k)
         ).matrix
         for k in (1, 3)
     )
@@ -168,7 +168,7 @@ def test_layers_leave_less_error_of_which_one_order_more_finds_more():
     ).compliance[3, 3]
     errors, shares = [], []
     for layers in (0, 2):
-        body = sg.build(scene, "solid", element="tet10", refinement=0.35, layers=layers)
+        body = sg.build(scene, "solid", element="tet10", refinement=0.25, layers=layers)
         bounds = solid_bounds(scene, body, statics=True)
         value = condense(body, scene, "gear").compliance[3, 3]
         found = condense(bounds.softer(bounds.reached), scene, "gear").compliance[3, 3] - value
@@ -184,7 +184,7 @@ def test_layers_leave_less_error_of_which_one_order_more_finds_more():
 def test_layers_in_a_half_with_a_keyway_are_counted():
     key = Keyway(name="key", segment="thin", y=0.1, length=0.02, width=0.008, depth=0.004)
     scene = stepped(features=[key])
-    options = {"element": "tet10", "refinement": 0.3, "layers": 1}
+    options = {"element": "tet10", "refinement": 0.2, "layers": 1}
     body = sg.build(scene, "solid", **options)
     finer = sg.build(scene, "solid", **(options | {"layers": 2}))
     assert len(body.blocks) == 2

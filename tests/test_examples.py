@@ -36,7 +36,7 @@ def test_shaft_in_python():
     assert found["harmonic"] == pytest.approx(found["timoshenko"], rel=1e-5)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_shaft_to_report(tmp_path):
     pytest.importorskip("pandas")
     found = run("shaft_to_report", tmp_path)
@@ -127,7 +127,7 @@ def test_before_solving():
     assert found["euler"] == found["timoshenko"] == "will not hold" and found["solid"] == "holds"
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_two_shafts():
     found = run("two_shafts")
     modes = found["modes"]

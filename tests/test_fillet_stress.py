@@ -34,8 +34,8 @@ def loaded():
 
 @pytest.fixture(scope="module")
 def fine():
-    """Half as many cells again either way; its orders 5 and 6 differ by less than 4e-3."""
-    return fillet_factors(shoulder(), "fillet", 1e-9, orders=(5, 6), refinement=1.5)
+    """A quarter more cells either way; its orders 5 and 6 differ by less than 4e-3."""
+    return fillet_factors(shoulder(), "fillet", 1e-9, orders=(5, 6), refinement=1.25)
 
 
 @pytest.fixture(scope="module")
@@ -55,9 +55,11 @@ def test_a_bar_holds_what_a_finer_mesh_changes(load, found, fine):
     assert abs(one.gradient - truth.gradient) < one.gradient_bar
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("load", ["tension", "bending"])
-def test_errors_fall_with_the_order(load, orders, fine):
+def test_errors_fall_with_the_order(load, orders):
     """By a factor of two and more an order, which is what exponential convergence is."""
+    fine = fillet_factors(shoulder(), "fillet", 1e-9, orders=(5, 6), refinement=1.5)
     fallen = errors(orders, fine, load)
     assert fallen[0] / fallen[2] > 4 and fallen[1] / fallen[3] > 4
     assert orders[-1].unknowns < 30000
@@ -139,7 +141,7 @@ def test_the_piece_has_the_stress_of_the_whole_shaft(turned):
     scene = shoulder(turned=turned)
     loads = loads_on(scene)
     (notch,) = shaft_stress(scene, loads, tolerance=0.005).notches
-    body = harmonic(scene, order=6, layers=4, edge_layers=1)
+    body = harmonic(scene, order=6, layers=3, edge_layers=0)
     fields = flexibility(body).fields
     arc = Arc(scene, body, RootArc.of(scene.corners[0]))
     six = np.array([loads[port.name] for port in body.ports])

@@ -136,12 +136,12 @@ HELD = [
 def test_splitting_changes_nothing():
     whole = krylov(STEPPED, HELD, 8)
     parts = [
-        Span(s.length / 50, s.bending_stiffness, s.mass_per_length)
+        Span(s.length / 20, s.bending_stiffness, s.mass_per_length)
         for s in STEPPED
-        for _ in range(50)
+        for _ in range(20)
     ]
     split = krylov(parts, HELD, 8)
-    # Rounding of 150 transfers instead of a dozen.
+    # Rounding of 60 transfers instead of a dozen.
     np.testing.assert_allclose(split.frequency_hz, whole.frequency_hz, rtol=1e-12)
 
 
@@ -156,7 +156,7 @@ def test_a_very_short_span_costs_no_digits():
 def test_frequencies_rise_with_the_spring_from_nothing_to_a_clamp():
     before = krylov([UNIT], [held(0.3, 0.0), held(1, 5.0)], 6).frequency_hz
     first = []
-    for spring in 10.0 ** np.arange(-10, 21):
+    for spring in 10.0 ** np.arange(-10, 21, 2):
         now = krylov([UNIT], [held(0.3, spring), held(1, 5.0)], 6).frequency_hz
         assert np.all(now >= before * (1 - 1e-13))  # rounding of a root
         before = now

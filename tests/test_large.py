@@ -49,7 +49,7 @@ def usual():
 @pytest.mark.parametrize(
     "options, backend",
     [
-        pytest.param({"precision": "single"}, "superlu", marks=pytest.mark.long),
+        pytest.param({"precision": "single"}, "superlu", marks=pytest.mark.slow),
         pytest.param({"precision": "single"}, "pardiso", marks=PARDISO),
         pytest.param({"out_of_core": True}, "pardiso", marks=PARDISO),
         pytest.param(

@@ -78,19 +78,26 @@ def test_the_case_that_counts_is_printed_where_none_is_chosen(file, capsys):
     assert capsys.readouterr().err == ""
 
 
-@pytest.mark.long
+SAYING = (
+    ("stiffness", "FILE", "-f", "timoshenko"),
+    ("budget", "FILE"),
+    ("check", "FILE"),
+    ("sweep", "FILE", "-f", "timoshenko", "--vary", "bearing.B.position=0.149,0.15"),
+    ("compare", "FILE", "--models", "timoshenko", "--no-renders"),
+)
+#: one whose words are printed, and one that says them beside its progress
+OFTEN = ("check", "compare")
+
+
 @pytest.mark.parametrize(
     "words",
     [
-        ("stiffness", "FILE", "-f", "timoshenko"),
-        ("budget", "FILE"),
-        ("check", "FILE"),
-        ("sweep", "FILE", "-f", "timoshenko", "--vary", "bearing.B.position=0.149,0.15"),
-        ("compare", "FILE", "--models", "timoshenko", "--no-renders"),
+        pytest.param(w, marks=pytest.mark.long if w[0] in OFTEN else pytest.mark.slow)
+        for w in SAYING
     ],
     ids=lambda words: words[0],
 )
-def test_commands_say_which_case_counts(words, file, monkeypatch):
+def test_commands_say_which_case_counts(words, file, monkeypatch, no_charts):
     monkeypatch.chdir(file.parent)
     words = [file if word == "FILE" else word for word in words]
     plain = command(*words)

@@ -222,7 +222,7 @@ BY_A_SOLID = (printed_notches.V_GROOVE,)
 @pytest.mark.parametrize(
     "cases",
     [
-        pytest.param(BY_A_SOLID, id="solid", marks=pytest.mark.long),
+        pytest.param(BY_A_SOLID, id="solid", marks=pytest.mark.slow),
         pytest.param([c for c in printed_notches.CASES if c not in BY_A_SOLID], id="charts"),
     ],
 )

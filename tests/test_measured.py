@@ -78,7 +78,7 @@ def told(measured, computed, truth):
 def test_pairs_that_are_told_as_sure_are_right(slip):
     rng = np.random.default_rng(7)
     wrong = sure = 0
-    for _ in range(50):
+    for _ in range(25):
         computed, measured = drawn(rng)
         truth = list(range(len(computed)))
         at = int(rng.integers(2, len(computed) - 2))
@@ -107,7 +107,7 @@ def test_pairs_that_are_told_as_sure_are_right(slip):
         sure += int((alignment.pairs >= SURE).sum())
     # a probability of 95 % and more may be wrong once in twenty
     assert wrong <= 0.02 * sure
-    assert sure > 0.75 * 50 * (11 if slip == "swapped" else 13)
+    assert sure > 0.75 * 25 * (11 if slip == "swapped" else 13)
 
 
 def test_two_modes_are_under_one_peak_where_it_is_as_wide_as_they_are_apart():
@@ -340,10 +340,10 @@ def test_a_modulus_is_found_and_its_deviation_is_that_of_the_data(rod):
     body = sg.build(scene, "harmonic", order=5)
     modes = [m for m in sg.modes(body, scene, n=12).modes if m.frequency_hz > 0]
     rng, off = np.random.default_rng(5), []
-    for _ in range(3):
+    for _ in range(2):
         noisy = sorted(m.frequency_hz * math.exp(1e-3 * rng.standard_normal()) for m in modes)
         peaks = Measured(uncertainty=1e-3, mode=[{"frequency": 1.01 * f} for f in noisy])
-        found = identify(rod, peaks, ["material.E"], tol=1e-3)
+        found = identify(rod, peaks, ["material.E"], tol=3e-3)
         one = found["material.E"]
         off.append(math.log(one.value / (200e9 * 1.01**2)) / one.deviation)
         # f goes with the root of E: twice the deviation of a mean of so many
@@ -366,18 +366,18 @@ PEAKS = Measured(uncertainty=1e-3, mode=[{"frequency": f} for f in (254.4, 699.1
 
 
 def test_bounds_hold_a_value_and_say_so(rod):
-    found = identify(rod, PEAKS, ["material.E=180 GPa : 205 GPa"], tol=1e-3)
+    found = identify(rod, PEAKS, ["material.E=180 GPa : 205 GPa"], tol=0.01)
     one = found["material.E"]
     # the data ask for 210 GPa
     assert one.value == pytest.approx(205e9) and one.high == pytest.approx(205e9)
     assert any("at its bound" in sentence for sentence in found.sentences)
-    free = identify(rod, PEAKS, ["material.E=180 GPa : 220 GPa"], tol=1e-3)["material.E"]
+    free = identify(rod, PEAKS, ["material.E=180 GPa : 220 GPa"], tol=0.01)["material.E"]
     assert free.low < 210e9 < free.high and not free.at_bound
 
 
 def test_a_resonance_that_no_other_tells_is_predicted_from_none(rod):
     one = Measured(uncertainty=1e-3, mode=[{"frequency": 254.4}])
-    found = identify(rod, one, ["material.E"], tol=1e-3)
+    found = identify(rod, one, ["material.E"], tol=0.01)
     assert found.fitted[0].left_out is None and found.rms_left_out is None
     assert any("bending 1 would be fitted by any value" in one for one in found.sentences)
     json.dumps(plain(found), allow_nan=False)
@@ -385,11 +385,11 @@ def test_a_resonance_that_no_other_tells_is_predicted_from_none(rod):
 
 def test_what_is_known_beforehand_stands_where_the_data_tell_nothing(rod):
     """E over density is all that a free body tells."""
-    found = identify(rod, PEAKS, ["material.E", "material.density=7700 kg/m^3 ± 0.5 %"], tol=1e-3)
+    found = identify(rod, PEAKS, ["material.E", "material.density=7700 kg/m^3 ± 0.5 %"], tol=0.01)
     density, modulus = found["material.density"], found["material.E"]
     assert density.value == pytest.approx(7700, rel=1e-4)
     assert density.deviation == pytest.approx(0.005, rel=0.01)
-    alone = identify(rod, PEAKS, ["material.E"], tol=1e-3)["material.E"]
+    alone = identify(rod, PEAKS, ["material.E"], tol=0.01)["material.E"]
     assert modulus.value == pytest.approx(alone.value * 7700 / 7850, rel=1e-3)
     assert modulus.deviation == pytest.approx(math.hypot(alone.deviation, 0.005), rel=0.05)
     assert any("do not determine material.density" in sentence for sentence in found.sentences)
@@ -397,9 +397,9 @@ def test_what_is_known_beforehand_stands_where_the_data_tell_nothing(rod):
 
 @pytest.mark.long
 def test_data_and_what_was_known_are_weighed_by_their_deviations(rod):
-    alone = identify(rod, PEAKS, ["material.E"], tol=1e-3)["material.E"]
+    alone = identify(rod, PEAKS, ["material.E"], tol=0.01)["material.E"]
     rod.write_text(ROD + '[uncertain]\n"material.E" = "200 GPa ± 2 %"\n')
-    both = identify(rod, PEAKS, ["material.E"], tol=1e-3, priors=True)["material.E"]
+    both = identify(rod, PEAKS, ["material.E"], tol=0.01, priors=True)["material.E"]
     weights = 1 / alone.deviation**2, 1 / 0.02**2
     mean = np.average(np.log([alone.value, 200e9]), weights=weights)
     # to second order in what is between them
@@ -467,7 +467,7 @@ def test_bars_of_a_list_that_is_cut_rest_on_what_was_solved_above_it(rod):
     assert own and all(bar == pytest.approx(every[name]) for name, bar in own.items())
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_two_bearings_that_may_have_changed_places_are_told(tmp_path):
     """Each bearing has a mode of its own near 3.2 kHz; either may be the lower one."""
     true, path = (9.8e8, 8.7e8), tmp_path / "shaft.toml"

@@ -37,7 +37,7 @@ def axle():
     return assembly, found
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(axle):
     _, found = axle
     one, two = found.branches_apart
@@ -55,7 +55,7 @@ def test_the_largest_force_of_the_axle_is_on_branches_apart_that_time_bears_out(
         assert np.ptp(time.force) / 2 == pytest.approx(force, rel=1e-3)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
     assembly, found = axle
     told = " ".join(BacklashStudy(assembly.train, (found,), 0.044).sentences())
@@ -71,7 +71,7 @@ def test_what_is_told_of_the_axle_names_both_and_what_was_looked_for(axle):
 
 def test_a_pair_has_the_subharmonic_that_a_motion_in_time_keeps_and_nothing_else():
     own = pair(0.05)
-    branch = follow(own, 0.3, 2.5, step=0.02)
+    branch = follow(own, 0.3, 2.5, step=0.04)
     looked = search(branch, np.geomspace(0.35, 2.4, 6))
     (one,) = looked.branches
     assert one.periods == 2 and one.end == "closed" and not looked.lost
@@ -87,7 +87,7 @@ def test_a_pair_has_the_subharmonic_that_a_motion_in_time_keeps_and_nothing_else
 
 def test_a_branch_of_two_periods_that_comes_off_another_ends_there():
     own = pair(0.1)
-    branch = follow(own, 0.3, 2.5, step=0.02)
+    branch = follow(own, 0.3, 2.5, step=0.04)
     looked = search(branch, [1.2])
     (one,) = looked.branches
     assert one.end == "merged" and one.periods == 2

@@ -14,6 +14,7 @@ import notebooks  # noqa: E402
 FOLDER = ROOT / "examples" / "notebooks"
 #: compares all models, refined until the solid can judge: some ten seconds
 MARKS = dict.fromkeys(("compare", "tutorial", "tap_test"), pytest.mark.slow)
+MARKS["bearings_and_systems"] = pytest.mark.long
 NAMES = sorted(p.stem for p in FOLDER.glob("*.ipynb"))
 
 

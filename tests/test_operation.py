@@ -154,10 +154,11 @@ def replace(*names):
         os.kill(os.getpid(), signal.SIGKILL)
     real(*names)
 
+before.write_report(root / "before", renders=False)
 for at in range(1, files + 2):
     folder = root / str(at)
-    before.write_report(folder / "again", renders=False)
-    shutil.copytree(folder / "again", folder / "old")
+    for copy in ("old", "again"):
+        shutil.copytree(root / "before", folder / copy)
     child = os.fork()
     if child == 0:
         os.replace = replace

@@ -230,12 +230,12 @@ def test_bad_names(shaft):
 
 # --------------------------------------------------------------------------- answers and commands
 def test_an_answer_at_a_further_point(shaft):
-    found = sg.answer(shaft, tol=0.02, ask="C_zz@pinion,C_zz@wheel,bending")
+    found = sg.answer(shaft, tol=0.05, ask="C_zz@pinion,C_zz@wheel,bending")
     assert [v.quantity for v in found.values] == ["C_zz@pinion", "C_zz", "bending 1"]
-    turned = sg.answer(shaft.with_main_port("pinion"), tol=0.02, ask="C_zz,C_zz@wheel,bending")
+    turned = sg.answer(shaft.with_main_port("pinion"), tol=0.05, ask="C_zz,C_zz@wheel,bending")
     assert found["C_zz@pinion"] == pytest.approx(turned["C_zz"], rel=1e-9)  # the same mesh
     assert found["C_zz"] == pytest.approx(turned["C_zz@wheel"], rel=1e-9)
-    assert all(0 < v.bar <= 0.02 for v in found.values)
+    assert all(0 < v.bar <= 0.05 for v in found.values)
     with pytest.raises(sg.SolidgearError, match="no lumped point"):
         sg.answer(shaft, ask="C_zz@gear")
     with pytest.raises(sg.SolidgearError, match="a frequency belongs to the whole shaft"):
@@ -296,6 +296,7 @@ def run(*args):
     return CliRunner().invoke(app, [str(a) for a in args])
 
 
+@pytest.mark.long
 def test_the_command(shaft):
     path = GEOMETRY / "intermediate_shaft.toml"
     mesh = ("-f", "harmonic", "--set", "order=2", "--set", "layers=0")

@@ -179,7 +179,7 @@ def turned():
     return reducer, run(reducer.bodies, 4096, turns=2, settling=0, every=4)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_steps_and_an_adaptive_integrator_have_one_envelope(turned):
     reducer, motion = turned
     there = 64  # a sixteenth of a turn: directions of the planets have turned by 22 degrees

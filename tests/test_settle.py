@@ -32,7 +32,7 @@ FREE = str(ROOT / "geometry" / "cylinder_free.toml")
 #: the same system, factored again
 ROUNDING = 1e-9
 #: layers towards all corners, and what such a mesh errs by itself
-FINE = {"order": 5, "layers": 3, "edge_layers": 2, "relative_size": 4.0}
+FINE = {"order": 5, "layers": 2, "edge_layers": 1, "relative_size": 4.0}
 REFERENCE = 5e-5
 
 
@@ -129,6 +129,7 @@ def test_a_body_that_nothing_holds_has_a_stiffness_of_zero_and_no_bar(run):
 
 
 # --------------------------------------------------------------------------- modes
+@pytest.mark.long
 def test_modes_are_those_of_the_mesh_and_the_first_of_every_family_have_a_bar(run, scene, truth):
     code, out, _ = run("modes", SCENE, "-n", "14", "--tol", "0.01", "--json")
     found = json.loads(out)

@@ -171,8 +171,15 @@ def test_stress_by_shear_that_no_rating_holds_is_told(file):
 
 
 # ----------------------------------------------------------------------- a train
-@pytest.mark.parametrize("direction", [None, "-z", "x"])
-@pytest.mark.parametrize("name", ["gearbox_train", "axle_straddle"])
+@pytest.mark.parametrize(
+    ("name", "direction"),
+    [
+        ("axle_straddle", None),
+        pytest.param("axle_straddle", "x", marks=pytest.mark.long),
+        pytest.param("gearbox_train", "-z", marks=pytest.mark.long),
+        *(pytest.param("gearbox_train", way, marks=pytest.mark.slow) for way in (None, "x")),
+    ],
+)
 def test_both_shafts_of_a_train_balance(name, direction):
     """Teeth, springs, bearings, weight of shaft and wheel, each shaft in axes of its own."""
     point = OperatingPoint(torque=115.0, **({"weight": direction} if direction else {}))

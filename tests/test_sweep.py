@@ -261,7 +261,8 @@ def test_too_many_seats_are_refused_with_the_number(tmp_path):
         light(tmp_path / "rows.csv", vary=["bearing.2.position=0.2:0.246:400"])
     with pytest.raises(SolidgearError, match="cannot be rigid"):
         options = {"attachments": ("rigid", "average")}
-        run(bearing_task(bearing_variants(PATH, VARY), options=options), tmp_path / "r.csv")
+        variants = bearing_variants(PATH, VARY)
+        run(bearing_task(variants, model="timoshenko", options=options), tmp_path / "r.csv")
 
 
 # ------------------------------------------------------------------------------------------------- who works

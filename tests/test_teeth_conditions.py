@@ -91,7 +91,7 @@ def conditions_hold(number):
 
 
 def test_conditions_hold_at_random():
-    steps = [conditions_hold(number) for number in range(60)]
+    steps = [conditions_hold(number) for number in range(30)]
     assert max(steps) < 20
 
 
@@ -120,7 +120,7 @@ def test_a_turned_train_has_the_same_contact(tmp_path):
     for azimuth in (0.0, 2.2):
         turned = train.with_changes(meshes=(train.meshes[0].with_changes(azimuth=azimuth),))
         carried = Carried.at_rest(with_sections(turned), turned.point)
-        contact = mesh_contact(carried, carried.train.pairs[0], TeethModel(slices=12, positions=4))
+        contact = mesh_contact(carried, carried.train.pairs[0], TeethModel(slices=8, positions=4))
         cycles.append(contact.cycle)
     assert cycles[0].face_load_factor > 1.05
     turned = cycles[1]

@@ -35,6 +35,8 @@ from solidgear.variants.sweep.file_task import BARS
 from solidgear.variants.sweep.sheet import sweep_table
 from solidgear.variants.sweep.train_task import train_task
 
+pytestmark = pytest.mark.usefixtures("coarse_teeth")
+
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 GEARBOX, AXLE = GEOMETRY / "gearbox_train.toml", GEOMETRY / "axle_overhung.toml"
 BEAMS = {"pinion": "timoshenko", "gear": "timoshenko"}
@@ -218,6 +220,7 @@ def test_the_torque_of_least_error_grows_with_the_relief(errors):
 RANGE = "pinion.relief.tip+gear.relief.tip=0 um:8 um"
 
 
+@pytest.mark.long
 def test_a_design_of_a_train_is_solved_at_every_point(rows):
     """The file as it is, then a relief; goals choose which numbers are solved."""
     ends = Design((RANGE,), search=True)

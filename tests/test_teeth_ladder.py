@@ -130,7 +130,7 @@ def test_error_bars_hold_against_finer_slices_and_cells(carried):
         assert bars[name] < 0.25 * abs(numbers[name]) + 5e-9, name
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_ring_in_contact_by_slices_is_that_of_a_ring_in_3d():
     """Planet and ring, straight teeth on a face of six modules: slices are 3 to 4 % too stiff, as even
     loads in 3D say of them, and both lean on corners of tips alike.

@@ -85,7 +85,7 @@ def test_the_ring_of_all_pitches_solved_at_once_moves_as_the_waves_of_one():
     assert np.abs((teeth.port_compliance - direct) / scale).max() < 1e-9
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_sides_of_a_pitch_move_smoothly_enough():
     usual, free = (coarse(layer=0.5, slices=10, power=power) for power in (0.5, 2.0))
     for tooth in (0, 1):

@@ -21,6 +21,8 @@ from solidgear.trains.file.housing import TrainHousing
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.response.excitation import excitation
 
+pytestmark = pytest.mark.usefixtures("coarse_teeth")
+
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 QUICK = TeethModel(slices=12, positions=8)
 OTHER = {"left": "right", "right": "left"}

@@ -36,9 +36,9 @@ VERDICTS = {
 
 @pytest.fixture(scope="module")
 def judged():
-    """Claims by mesh cycles of half the places that the page takes, which every verdict outlives."""
+    """Claims by mesh cycles of a quarter of the places that the page takes, which every verdict outlives."""
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(contact, "POSITIONS", contact.POSITIONS // 2)
+        patch.setattr(contact, "POSITIONS", contact.POSITIONS // 4)
         yield {name: claim() for name, claim in FOUND.items()}
     contact.contact.cache_clear()
 

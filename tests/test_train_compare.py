@@ -16,9 +16,9 @@ TRAIN, SHAFT = "geometry/axle_overhung.toml", "geometry/pinion_overhung.toml"
 
 @pytest.fixture(scope="module")
 def compared(tmp_path_factory):
-    """The shipped train; --json, so that what is printed is what is stored."""
+    """The shipped train on coarse meshes; --json, so that what is printed is what is stored."""
     out = tmp_path_factory.mktemp("train") / "out"
-    done = command("compare", TRAIN, "--out", out, "--json", "--no-renders")
+    done = command("compare", TRAIN, "--out", out, "--json", "--no-renders", "--tol", "0.05")
     assert done.exit_code == 0, done.output
     return json.loads(done.stdout), out
 

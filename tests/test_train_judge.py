@@ -18,7 +18,7 @@ from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.drive import Drive
 
 TRAIN = sg.load_train("geometry/axle_overhung.toml")
-COARSE = {"harmonic": {"order": 2, "layers": 1}}
+COARSE = {"harmonic": {"order": 2, "layers": 0}}
 
 
 @pytest.fixture(scope="module")
@@ -48,9 +48,10 @@ def test_the_departures_are_where_the_numbers_say(verdict):
     hz = np.linspace(5, 3000, 60_001)
     ratio = np.abs(mine.mesh(hz)[1] / own.mesh(hz)[1])
     off = np.abs(20 * np.log10(ratio)) > 3
-    assert mix.force_to_hz == pytest.approx(hz[off][0], rel=5e-3)
+    # the first place beyond them is told, and places stand up to 2 % apart
+    assert hz[off][0] <= mix.force_to_hz < 1.02 * hz[off][0]
     apart = np.abs(ratio - 1) > 0.02
-    assert mix.close_to_hz == pytest.approx(hz[apart][0], rel=5e-3)
+    assert hz[apart][0] <= mix.close_to_hz < 1.02 * hz[apart][0]
 
 
 def test_total_mass_along_the_shaft_is_the_largest_error_left_in_the_lumped_model(verdict):
@@ -88,8 +89,8 @@ def test_the_judge_tells_how_sure_its_own_meshes_are(verdict):
     and is no more than three times as wide. Measured: 1.4 to 2.1.
     """
     found = verdict[1]
-    assembly = Assembly(TRAIN, kept=12, settings={"harmonic": {"order": 3, "layers": 1}})
-    fine = Assembly(TRAIN, kept=12, settings={"harmonic": {"order": 4, "layers": 2}})
+    assembly = Assembly(TRAIN, kept=6, settings={"harmonic": {"order": 3, "layers": 0}})
+    fine = Assembly(TRAIN, kept=6, settings={"harmonic": {"order": 5, "layers": 1}})
     n = 8
     one, two = (w.system(JUDGE, JUDGE).modes(n) for w in (assembly, fine))
     error = 1 - two.frequency_hz[two.rigid :] / one.frequency_hz[one.rigid :]

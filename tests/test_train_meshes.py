@@ -16,7 +16,7 @@ from solidgear.trains.response.respond import respond
 SIDES = dict.fromkeys(("pinion", "gear"), JUDGE)
 LIMIT = 2500.0
 #: what the fine meshes leave
-RIGHT = 2e-5
+RIGHT = 1e-4
 PINION = """\
 material = "steel"
 segment = [{ kind = "cylinder", name = "shaft", length = "120 mm", diameter = "40 mm" }]
@@ -98,15 +98,15 @@ def train(file):
 
 @pytest.fixture(scope="module")
 def fine(train):
-    """Meshes good to some 1e-5."""
-    return Assembly(train, settings={"harmonic": {"order": 5, "layers": 1}})
+    """Meshes good to some 5e-5."""
+    return Assembly(train, settings={"harmonic": {"order": 4, "layers": 1, "edge_layers": 1}})
 
 
 def unknowns(assembly):
     return {side: assembly.shaft_model(side, JUDGE).unknowns for side in SIDES}
 
 
-@pytest.mark.parametrize("tol", [2e-3, 5e-4])
+@pytest.mark.parametrize("tol", [5e-3, 5e-4])
 def test_meshes_follow_until_every_mode_is_within_the_tolerance(train, fine, tol):
     """The bars hold what every mode errs by, and are no wider than what was asked for; on the first
     meshes they are wider.
@@ -125,7 +125,7 @@ def test_meshes_follow_until_every_mode_is_within_the_tolerance(train, fine, tol
 
 def test_a_shaft_that_holds_no_error_keeps_its_mesh(train):
     """The modes of the pinion on a beam rest on the mesh of the gear, and on no other."""
-    assembly = Assembly(train)
+    assembly = Assembly(train, tol=5e-3)
     first = unknowns(assembly)
     assembly.system("timoshenko", JUDGE)
     assert unknowns(assembly)["pinion"] == first["pinion"]
@@ -172,7 +172,8 @@ def test_a_higher_frequency_refines_and_is_not_refused(train):
     assert all(unknowns(assembly)[side] > first[side] for side in SIDES)
 
 
-@pytest.mark.parametrize("tol", [2e-3, 5e-4])
+@pytest.mark.parametrize("tol", [5e-3, 5e-4])
+@pytest.mark.long
 def test_gears_at_rest_are_within_the_tolerance(train, fine, tol):
     point = OperatingPoint(torque=80.0)
     assembly = Assembly(train, kept=6, tol=tol)

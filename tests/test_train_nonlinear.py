@@ -71,7 +71,7 @@ def test_the_upper_motion_loses_its_stability_before_it_turns(solids):
     assert where.low == pytest.approx(654.9, abs=0.3) and 656.5 < where.high < 658.5
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_in_time_the_speed_rises_over_the_jump_that_the_branch_foretells(solids):
     hz = np.array([684.4, 685.0])
     begin = solids.branch.at(2 * np.pi * hz[0])[0]

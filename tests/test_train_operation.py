@@ -402,8 +402,8 @@ def test_misalignment_of_bevel_gears_by_rigid_motions(bevel, motion, told):
 @pytest.mark.long
 def test_bars_hold_what_a_finer_mesh_changes(helical):
     point = OperatingPoint(torque=100.0)
-    coarse = Assembly(helical, settings={"harmonic": {"order": 2, "layers": 1}})
-    finer = Assembly(helical, settings={"harmonic": {"order": 3, "layers": 1}})
+    coarse = Assembly(helical, kept=6, settings={"harmonic": {"order": 2, "layers": 1}})
+    finer = Assembly(helical, kept=6, settings={"harmonic": {"order": 3, "layers": 1}})
     here, there = (deflection(w, point, "harmonic", "harmonic") for w in (coarse, finer))
     pairs = [*zip(here.misalignment, there.misalignment)]
     pairs += zip(here.displacement["pinion"][:4], there.displacement["pinion"][:4])
@@ -418,7 +418,7 @@ def test_bars_hold_what_a_finer_mesh_changes(helical):
 @pytest.mark.long
 def test_verdict_names_the_cheapest_model_that_holds(helical):
     loose = helical.with_changes(ask=helical.ask.with_changes(tolerance=0.5))
-    assembly = Assembly(loose, settings={"harmonic": {"order": 2}})
+    assembly = Assembly(loose, kept=6, settings={"harmonic": {"order": 2, "layers": 0}})
     found = deflect(assembly, OperatingPoint(torque=100.0))
     standing = {one.model: one.verdict for one in found.standings}
     assert standing["timoshenko"] == "within" and found.cheapest is not None

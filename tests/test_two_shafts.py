@@ -45,6 +45,7 @@ def thicker(tmp_path_factory):
 
 
 # --------------------------------------------------------------------------- numbers
+@pytest.mark.long
 def test_a_thicker_shaft_is_heavier_stiffer_and_all_of_it_is_resolved(thicker):
     told, _ = thicker
     assert [d["path"] for d in told["differences"]] == ["segment.shaft.diameter"]
@@ -91,6 +92,7 @@ def test_what_is_asked_stands_first_with_the_better_of_both_and_what_bearings_le
     assert found.results["open"]["a"]["inputs"]
 
 
+@pytest.mark.long
 def test_both_sections_are_drawn_to_one_scale(thicker):
     _, folder = thicker
     assert "Both to one scale." in (folder / "report.html").read_text(encoding="utf-8")
@@ -106,6 +108,7 @@ def test_both_sections_are_drawn_to_one_scale(thicker):
     assert lengths[0] != lengths[1]
 
 
+@pytest.mark.long
 def test_numbers_are_those_of_each_shaft_alone_within_both_bars(thicker):
     told, _ = thicker
     alone = sg.answer(sg.load(SCENE), 0.01, "C_zz,K_zz,bending")
@@ -115,6 +118,7 @@ def test_numbers_are_those_of_each_shaft_alone_within_both_bars(thicker):
         assert abs(mine["a"] - value.value) <= band
 
 
+@pytest.mark.long
 def test_every_bar_is_within_a_tenth_of_the_tolerance(thicker):
     told, _ = thicker
     assert told["tolerance"] == pytest.approx(sg.load(SCENE).ask.tolerance / 10)
@@ -194,6 +198,7 @@ def test_fields_of_scenes_made_in_python_are_told_by_their_paths():
 
 
 # --------------------------------------------------------------------------- page and files
+@pytest.mark.long
 def test_the_page_holds_the_numbers_of_the_json_and_needs_no_other_file(thicker):
     told, out = thicker
     page, text = page_of(out, told, told["sentences"])

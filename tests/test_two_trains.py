@@ -45,12 +45,12 @@ def copied(folder, name="b.toml", **replaced):
 
 @pytest.fixture(scope="module")
 def stiffer(tmp_path_factory):
-    """The shipped train beside one with twice the mesh stiffness."""
+    """The shipped train beside one with twice the mesh stiffness, on coarse meshes."""
     folder = tmp_path_factory.mktemp("two")
     other = copied(folder, stiffness=('"2.5e8 N/m"', '"5e8 N/m"'))
-    words = ("--pinion", "timoshenko", "--out", folder / "out", "--json")
+    words = ("--pinion", "timoshenko", "--out", folder / "out", "--json", "--tol", "0.05")
     done = command("compare", OVERHUNG, other, *words)
-    alone = respond(Assembly(sg.load_train(other)), "timoshenko", "harmonic")
+    alone = respond(Assembly(sg.load_train(other), tol=0.05), "timoshenko", "harmonic")
     assert done.exit_code == 0, done.output
     return json.loads(done.stdout), folder / "out", alone
 

@@ -27,7 +27,7 @@ from validation.shipped import GEOMETRY
 
 #: a mesh of hexahedra of one layer at shoulders and none at the ends of seats, and of tetrahedra
 HEX = {"layers": 1, "radial_layers": 1, "edge_layers": 0, "relative_size": 2.0, "around": 8}
-TET = {"element": "tet10", "refinement": 0.3}
+TET = {"element": "tet10", "refinement": 0.2}
 #: m; height of an L bracket, and thickness of both of its arms
 TALL, THICK = 0.03, 0.01
 HELD = """
@@ -250,7 +250,7 @@ def test_a_study_keeps_where_its_widest_bar_sits():
     assert recorded_places(scene, solution) is None
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_corrected_solid_has_its_error_at_the_cut_that_corrects_it(tmp_path):
     scene = shaft(0.046, (keyway(0.012),))
     error_map = map_error(scene, Quantity("torsion 1"), {"refinement": 0.3}, "corrected")

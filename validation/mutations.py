@@ -1540,7 +1540,7 @@ def apply(mutation: Mutation, root: Path) -> None:
 
 def passes(test: str, root: Path) -> bool:
     """Whether a test passes on the source under ``root``."""
-    env = {**os.environ, "PYTHONPATH": str(root), "PYTHONDONTWRITEBYTECODE": "1"}
+    env = {**os.environ, "PYTHONPATH": str(root)}
     # wide grids too: one of them may be what sees a mutation
     options = ["-q", "-x", "-n0", "-p", "no:cacheprovider", "-m", "not slow"]
     done = subprocess.run(
