@@ -12,7 +12,7 @@ import pytest
 from test_train_models import COARSE, OVERHUNG
 
 import solidgear as sg
-from solidgear.show.viewer import Turning, turn, viewer_page
+from solidgear.show.viewer import Turning, turn
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.modes.pictures import turning_modes
 
@@ -123,10 +123,10 @@ def train():
 @pytest.fixture(scope="module")
 def found(models: Turning, train, tmp_path_factory):
     """What the experiment saw at a desk, on a phone, and where there is no WebGL."""
-    page = viewer_page(models.models, "pinion", still="data:,")
+    page = Turning(models.models, "pinion").page(still="data:,")
     frames = {
         "desk": (1200, EARS, page),
-        "train": (900, EARS, viewer_page([train], "train", first="gear axial 1")),
+        "train": (900, EARS, Turning((train,), "train", first="gear axial 1").page()),
         "phone": (390, EARS, page),
         "blind": (600, EARS + BLIND, page),
     }
