@@ -110,7 +110,7 @@ def squeezed(train, gear, patched, layers):
     scene, body = gear
     patch, motion = patched
     harmonics = (2, 3)
-    solid = sg.build(scene, "solid", around=16, layers=layers)
+    solid = sg.build(scene, "solid", around=16, layers=layers, half=False)
     (block,) = solid.blocks
     row = solid_row(solid, patch, patch.first, patch.last, harmonics)
     row = row if block.expand is None else block.expand.T @ row

@@ -9,7 +9,7 @@ import psutil
 import pytest
 
 from solidgear.core.errors import SolidgearError
-from solidgear.core.machine import threads
+from solidgear.core.machine import processes, threads
 from solidgear.core.machine.memory import SMALL_MB, NoRoom, available_mb, one_run, require
 from solidgear.core.machine.processes import Other, family_memory, resident_mb, tree_seconds
 
@@ -50,6 +50,7 @@ def test_a_system_that_shows_nothing(tmp_path, monkeypatch):
 
     monkeypatch.setattr(psutil, "virtual_memory", hidden)
     monkeypatch.setattr(psutil, "Process", no_process)
+    processes._process.cache_clear()  # this one, which is kept
     assert available_mb(tmp_path) is None and resident_mb() is None and family_memory()() is None
     assert tree_seconds(1) is None
 
