@@ -13,6 +13,7 @@ from typing import TypeVar
 from solidgear.comparison.page.html import drawn_charts, page_template, write_report
 from solidgear.core import LADDER, ModeSet, Quantity, Record, Scene, Solution
 from solidgear.core.judge.where import least_certain
+from solidgear.core.ladder.model import SOLID
 from solidgear.core.machine.meter import Meter
 from solidgear.core.machine.processes import family_memory
 from solidgear.core.quantity import FIRST_BENDING
@@ -31,21 +32,28 @@ SHEET = "sheet.html"
 
 
 class Pictures:
-    """Pictures of mode shapes and of an error bar, each begun as soon as its model is solved."""
+    """Pictures of mode shapes and of an error bar, begun as soon as a 3D solid is solved: who draws takes
+    as much memory as solving does.
+    """
 
     def __init__(self, drawing: Drawing, out: str | os.PathLike):
         self.drawing, self.folder = drawing, Path(out)
         self.jobs: dict[str, RenderJob] = {}  #: of mode shapes, by model
+        self.waiting: list[tuple[str, Solution]] = []  #: models solved before it
         self.error: RenderJob | None = None  #: of the first 3D solid
 
     def begin_early(self, scene: Scene, model: str, solution: Solution) -> None:
-        """Begin the pictures of a model while others are being solved; why they failed is told when
-        the report is written.
+        """Begin the pictures of all models so far with that of a 3D solid, before the report is written;
+        why they failed is told there.
         """
+        self.waiting.append((model, solution))
+        if LADDER[model].family != SOLID or LADDER[model].follows:
+            return
         with contextlib.suppress(Exception):
-            self.begin(model, solution)
+            while self.waiting:
+                self.begin(*self.waiting.pop(0))
         with contextlib.suppress(Exception):
-            if model != "harmonic" and (quantity := least_certain(scene, solution)):
+            if quantity := least_certain(scene, solution):
                 self.begin_error(model, solution, quantity)
 
     def begin(self, model: str, solution: Solution) -> None:
