@@ -356,6 +356,7 @@ def test_one_file_given_twice_is_told_so_and_nothing_is_solved(tmp_path):
 
 
 def test_frames_of_two_trains_hold_numbers(mountings):
+    pytest.importorskip("pandas")
     modes = mountings.to_dataframe("natural_frequencies")
     change = (modes["B"] - modes["A"]) / modes["A"]
     assert np.allclose(modes["difference"].dropna(), change.dropna(), rtol=1e-12)
