@@ -97,11 +97,11 @@ def test_cells_without_an_image_are_seen():
     """A square cut along one diagonal, which the mirror turns into the other."""
     partner, kinds = np.array([1, 0, 3, 2]), np.array([0, 0])
     cut = np.array([[0, 0], [1, 2], [2, 3]])
-    assert not Images(cut, partner).are_cells(cut, partner, kinds)
+    assert not Images(cut, partner).are_alike(kinds)
     bars, turned_round = np.array([[0, 1], [1, 2]]), np.array([2, 1, 0])
     images = Images(bars, turned_round)
-    assert images.are_cells(bars, turned_round, kinds)
-    assert not images.are_cells(bars, turned_round, np.array([0, 1]))
+    assert images.are_alike(kinds)
+    assert not images.are_alike(np.array([0, 1]))
 
 
 def test_columns_that_follow_from_others_are_found():

@@ -85,10 +85,8 @@ def _shapes(modes: Iterable):
 def _volume(body: Body, mesh: Volume, shapes):
     element = ELEMENTS[mesh.element]
     order = node_order(mesh.local, element.vtk)
-    data = {
-        name: np.sum([*body.mesh_unknowns(vectors).values()], axis=0).reshape(-1, 3)
-        for name, vectors in shapes.items()
-    }
+    motion = body.geometry.motion  # type: ignore[union-attr]  # of a mesh that has a volume
+    data = {name: motion(body.mesh_unknowns(vectors)) for name, vectors in shapes.items()}
     return mesh.nodes.T, [(element.cell, mesh.cells[order].T)], data
 
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import itertools
 from collections.abc import Sequence
 
 import numpy as np
@@ -11,44 +10,32 @@ import scipy.sparse as sp
 from solidgear.core.body.model import Reflection
 
 
-def symmetric_bases(
-    n: int, reflections: Sequence[Reflection]
-) -> dict[tuple[float, ...], sp.csr_matrix]:
-    """Return orthonormal bases (n, p) of the motions that are symmetric or antisymmetric to every
-    plane, by the parity in each: at most one entry a row, and together as many columns as there are
-    unknowns.
+def symmetric_basis(
+    n: int, reflections: Sequence[Reflection], parity: Sequence[float]
+) -> sp.csr_matrix:
+    """Return an orthonormal basis (n, p) of the motions that are symmetric or antisymmetric to every
+    plane, by the parity in each: at most one entry a row, and of all parities together as many columns
+    as there are unknowns.
     """
     unknowns = np.arange(n)
-    # place and sign of every unknown under all products of reflections
+    # place and sign of every unknown under all products of reflections, as motions of this parity have it
     places, signs = [unknowns], [np.ones(n)]
-    for partner, sign in reflections:
+    for (partner, sign), of_plane in zip(reflections, parity):
         places += [place[partner] for place in places]
-        signs += [turn[partner] * sign for turn in signs]
+        signs += [of_plane * turn[partner] * sign for turn in signs]
     first = np.min(places, axis=0) == unknowns
-    bases = {}
-    for kind in itertools.product((1.0, -1.0), repeat=len(reflections)):
-        parity = [1.0]
-        for plane_parity in kind:
-            parity += [plane_parity * p for p in parity]
-        # a motion on a plane that is turned into its opposite is none of this kind
-        turned = [p * s for p, s in zip(parity, signs)]
-        included = first & np.all(
-            [(place != unknowns) | (t > 0) for place, t in zip(places, turned)], axis=0
-        )
-        start = np.flatnonzero(included)
-        if not len(start):
-            continue
-        column = np.arange(len(start))
-        # unknowns on a plane are met more than once, each time with the same sign
-        weight = np.zeros(n)
-        column_of = np.zeros(n, int)
-        for place, t in zip(places, turned):
-            weight[place[start]], column_of[place[start]] = t[start], column
-        rows = np.flatnonzero(weight)
-        size = np.bincount(column_of[rows], minlength=len(start))
-        entries = weight[rows] / np.sqrt(size[column_of[rows]])
-        bases[kind] = sp.csr_matrix((entries, (rows, column_of[rows])), shape=(n, len(start)))
-    return bases
+    # a motion on a plane that is turned into its opposite is none of this kind
+    alive = np.all([(place != unknowns) | (t > 0) for place, t in zip(places, signs)], axis=0)
+    start = np.flatnonzero(first & alive)
+    # unknowns on a plane are met more than once, each time with the same sign
+    weight = np.zeros(n)
+    column_of = np.zeros(n, int)
+    for place, t in zip(places, signs):
+        weight[place[start]], column_of[place[start]] = t[start], np.arange(len(start))
+    rows = np.flatnonzero(weight)
+    size = np.bincount(column_of[rows], minlength=len(start))
+    entries = weight[rows] / np.sqrt(size[column_of[rows]])
+    return sp.csr_matrix((entries, (rows, column_of[rows])), shape=(n, len(start)))
 
 
 def mirrored_basis(fold: sp.csr_matrix, reflection: Reflection) -> sp.csr_matrix:

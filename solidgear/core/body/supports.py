@@ -8,6 +8,8 @@ from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 import numpy as np
+import scipy.sparse as sp
+from scipy.sparse.csgraph import connected_components
 
 from solidgear.core.body.cache import LastTwo
 from solidgear.core.body.model import Body
@@ -217,13 +219,10 @@ def separated(basis: np.ndarray) -> np.ndarray:
     """
     onto = basis @ basis.T
     onto[np.abs(onto) < 1e-9] = 0.0
-    joined = (onto != 0) | np.eye(len(onto), dtype=bool)
-    group, before = np.arange(len(onto)), np.full(len(onto), -1)
-    while not np.array_equal(group, before):  # each takes the first of those that it is joined to
-        group, before = np.where(joined, group, len(group)).min(axis=1, initial=len(group)), group
+    count, group = connected_components(sp.csr_array(onto != 0), directed=False)
     out = np.zeros(basis.shape)
     column = 0
-    for number in np.unique(group):
+    for number in range(count):
         rows = np.flatnonzero(group == number)
         if len(rows) == 1:
             inside = np.ones((1, int(onto[rows[0], rows[0]] > 0.5)))

@@ -15,7 +15,7 @@ import scipy.sparse as sp
 
 from solidgear.core.body import Block
 from solidgear.core.body.model import Enrichment
-from solidgear.core.body.parity import symmetric_bases
+from solidgear.core.body.parity import symmetric_basis
 
 #: of the square of a column: what is left of it where it follows from others
 FOLLOWS = 1e-12
@@ -54,7 +54,7 @@ def enriched_block(block: Block, more: Enrichment) -> EnrichedBlock:
             more, whole, whole, more.ports, more.moves[:, None], more.moves / diagonal
         )
     images = [of_functions for _, of_functions in more.reflections[:2]]
-    fold = symmetric_bases(len(more.moves), images)[block.parity]
+    fold = symmetric_basis(len(more.moves), images, block.parity)
     near = fold[more.summed]
     held = fold.power(2).T @ more.moves
     inverse = held / (near.power(2).T @ diagonal)

@@ -86,7 +86,8 @@ class Corners:
     """
 
     def __init__(self, scene: Scene, body: Body, score: np.ndarray, order: int):
-        self._order, self._raised = order, 0
+        self._order = order
+        self.raised = 0  #: orders that the mesh is raised by
         cells = body.geometry.meridian.cells  # type: ignore[union-attr]
         corners = richer_space(coned(scene), body).corners
         self.exponents = {v: corner_strength(*corner) for v, corner in corners.items()}
@@ -110,7 +111,7 @@ class Corners:
         """
         exponent = self.exponents[vertex]
         cut = CUT_RATIO ** (2 * exponent * self.cuts[vertex])
-        by_order = self._order / (self._order + self._raised)
+        by_order = self._order / (self._order + self.raised)
         left = cut * by_order ** min(4 * exponent, POWER)
         dull = CUT_RATIO ** (exponent - self._sharpest)
         return np.where(self.beside[vertex], left * dull, 0.0) * self.near
@@ -131,10 +132,6 @@ class Corners:
         """Cut the cells beside a corner once more."""
         self.cuts[vertex] += 1
 
-    def raise_order(self) -> None:
-        """Raise the order of the mesh by one."""
-        self._raised += 1
-
     def smooth(self) -> float:
         """Return what an order more reduces: the error away from corners and beside those cut."""
         touched = [self.beside[v] for v, count in self.cuts.items() if count]
@@ -149,14 +146,13 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
     """
     mesh_of = body.geometry
     lines = Lines(mesh_of.uncut, mesh.across)  # type: ignore[union-attr]
-    corners, orders = Corners(scene, body, score, mesh.order), 0
+    corners = Corners(scene, body, score, mesh.order)
     rate, cure = _rate(mesh, corners.smooth())
     aim, most_orders = AIM * tol, min(ORDERS, HIGHEST - mesh.order) if cure else 0
-    while (smooth := corners.smooth() / rate**orders) + corners.left.sum() > aim:
+    while (smooth := corners.smooth() / rate**corners.raised) + corners.left.sum() > aim:
         vertex, leaves = corners.worst()
-        if orders < most_orders and (vertex is None or smooth > SMOOTH * aim):
-            orders += 1
-            corners.raise_order()
+        if corners.raised < most_orders and (vertex is None or smooth > SMOOTH * aim):
+            corners.raised += 1
         elif vertex is not None and (smooth <= SMOOTH * aim or leaves >= smooth):
             corners.cut(vertex)
         else:
@@ -168,8 +164,8 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
         if place not in cuts:
             lines.cut_slender(place)
         cuts[place] = min(cuts.get(place, 0) + corners.cuts[vertex], MOST_CUTS)
-    if not orders and (cuts, lines.points) == (dict(mesh.cuts), list(mesh.across)):
-        orders = 1
+    cut = (cuts, lines.points) != (dict(mesh.cuts), list(mesh.across))
+    orders = corners.raised if cut else max(corners.raised, 1)
     return replace(
         mesh,
         order=mesh.order + orders,

@@ -14,12 +14,12 @@ from typing import TYPE_CHECKING
 import numpy as np
 import scipy.sparse as sp
 
-from solidgear.core import Block, SolidgearError, Surface
+from solidgear.core import Block, Surface
 from solidgear.core.body.surface import Volume
 from solidgear.core.kernel.attachment import Attached, with_ports
-from solidgear.core.models.solid.block import Facets, rigid_motions
+from solidgear.core.models.solid.block import Facets, rigid_motions, seats_of
 from solidgear.core.models.solid.drawing import copied
-from solidgear.core.models.solid.enriched import Seat, enrichment
+from solidgear.core.models.solid.enriched import enrichment
 from solidgear.core.models.solid.matrices import _matrices, rigid_part, weighed
 from solidgear.core.models.solid.mesh import SolidMesh
 
@@ -47,34 +47,23 @@ def half_blocks(
     n = mesh.nodes.shape[1]
     rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
     on_plane = np.abs(mesh.nodes[axis]) < 1e-9 * scene.length
-    facets = [facets_of(station, attachment) for station, attachment in wanted]
-    for (station, _), faces in zip(wanted, facets):
-        if not len(faces):
-            raise SolidgearError(f"port {station.name!r}: no element faces lie on its seat")
-    seats = [
-        None if attachment == "rigid" else weighed(mesh.over_facets(faces), station.y, n)
-        for (station, attachment), faces in zip(wanted, facets)
-    ]
+    seats = seats_of(mesh, scene, wanted, facets_of)
+    means = [None if s.rigid else weighed(s.pieces(mesh), s.place, n) for s in seats]
     across = np.zeros(3, bool)
     across[axis] = True
     corners = mesh.mesh.p[axis, mesh.mesh.facets]
     plane = np.flatnonzero((np.abs(corners) < 1e-9 * scene.length).all(axis=0))
-    further = [
-        Seat(station.y, faces, attachment == "rigid")
-        for (station, attachment), faces in zip(wanted, facets)
-    ]
     blocks = []
     for (name, components), fixed in zip(PARTS[axis], (across, ~across)):
         free = np.flatnonzero(~(on_plane[:, None] & fixed).ravel())
         ports = []
-        for (station, _), faces, seat in zip(wanted, facets, seats):
-            if seat is None:
+        for seat, mean in zip(seats, means):
+            if mean is None:
                 mask = np.zeros((n, 3), bool)
-                mask[mesh.facet_unknowns(faces)] = True
-                ports.append(Attached(station.y, held=mask.ravel()[free]))
+                mask[mesh.facet_unknowns(seat.facets)] = True
+                ports.append(Attached(seat.place, held=mask.ravel()[free]))
             else:
-                gram, loads = seat
-                ports.append(Attached(station.y, rigid_part(gram, loads, components)[:, free]))
+                ports.append(Attached(seat.place, rigid_part(*mean, components)[:, free]))
         block = Block(
             name,
             components,
@@ -84,7 +73,7 @@ def half_blocks(
             y[free],
             planar=False,
             expand=sp.identity(3 * n, format="csc")[:, free].tocsr(),
-            enrich=partial(enrichment, mesh, materials, further, components, (plane, fixed), 2),
+            enrich=partial(enrichment, mesh, materials, seats, components, (plane, fixed), 2),
         )
         blocks.append(with_ports(block, ports))
     return blocks[0], blocks[1]

@@ -6,6 +6,7 @@ blocks from one Gram matrix of basis gradients per element.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING, Any
 
@@ -20,7 +21,7 @@ from solidgear.core.meshing.tetrahedra import tetrahedra
 from solidgear.core.models.kinds import BODIES, CUTS, CYCLIC, PARTS
 from solidgear.core.models.options import thick_enough
 from solidgear.core.models.solid.block import body_of, free_block, mesh_facts, mirrored, seat_facets
-from solidgear.core.models.solid.images import Images
+from solidgear.core.models.solid.images import images_of
 from solidgear.core.models.solid.lines import with_layers
 from solidgear.core.models.solid.mesh import SolidMesh, _isoparametric
 from solidgear.core.models.solid.parity import blocks_by_parity
@@ -123,7 +124,7 @@ def solid(
         body_mesh = _isoparametric(mesh, element, segment)
         nodes, reflections = mirrored(body_mesh.nodes, 1e-7 * scene.length)
         body_mesh = replace(body_mesh, nodes=nodes)
-        if not all(_has_images(body_mesh, reflection) for reflection in reflections):
+        if not _looks_the_same(body_mesh, reflections):
             reflections = ()
         facets = seat_facets(body_mesh, scene.segments, 1e-7 * scene.length)
     if half and len(reflections) > 1:
@@ -141,10 +142,9 @@ def solid(
     return body_of(scene, wanted, blocks, facts, body_mesh)
 
 
-def _has_images(mesh: SolidMesh, reflection: Reflection) -> bool:
+def _looks_the_same(mesh: SolidMesh, reflections: Sequence[Reflection]) -> bool:
     """Return whether the image of every cell is one of the same segment."""
-    corners, partner = mesh.mesh.t, reflection[0][::3] // 3
-    return Images(corners, partner).are_cells(corners, partner, mesh.segment)
+    return all(image.are_alike(mesh.segment) for image in images_of(mesh.mesh.t, reflections))
 
 
 def _hexes(scene, wanted, grading):

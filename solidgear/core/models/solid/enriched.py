@@ -24,7 +24,7 @@ from solidgear.core.body.model import Enrichment
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import Tabulation, unknowns
 from solidgear.core.kernel.lobatto import gauss_box
-from solidgear.core.models.solid.images import Images, of_vectors, orbits
+from solidgear.core.models.solid.images import Images, images_of, of_vectors, orbits
 from solidgear.core.models.solid.matrices import _cell_rule, integrals, rigid_part, weighed
 from solidgear.core.models.solid.mesh import SolidMesh
 
@@ -230,7 +230,7 @@ class Addition:
         """Compute what one order more adds to a mesh; `reflections` are those of its unknowns."""
         further = Further.beyond(m.name)
         numbers, signs = further.numbered(m)
-        images = tuple(Images(m.mesh.t, partner[::3] // 3) for partner, _ in reflections)
+        images = images_of(m.mesh.t, reflections)
         cells, multiples = orbits(images[:2], m.dofs.shape[1])
         summed, places = np.unique(numbers[:, cells], return_inverse=True)
         n = m.nodes.shape[1]

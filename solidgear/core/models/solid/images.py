@@ -36,18 +36,17 @@ class Images:
 
     def __init__(self, corners: np.ndarray, partner: np.ndarray):
         moved = partner[corners]
-        by_place, by_image = (np.lexsort(np.sort(c, axis=0)) for c in (corners, moved))
+        here, there = (np.sort(c, axis=0) for c in (corners, moved))
         self.cells = np.empty(corners.shape[1], int)  #: (ne,) image of every cell
-        self.cells[by_image] = by_place
+        self.cells[np.lexsort(there)] = np.lexsort(here)
+        #: whether the image of every cell is a cell: nodes may have images where cells have none
+        self.exact = np.array_equal(here[:, self.cells], there)
         #: (c, ne) corner of the image that every corner comes to lie at
         self.corners = (corners[:, self.cells] == moved[:, None]).argmax(axis=1)
 
-    def are_cells(self, corners: np.ndarray, partner: np.ndarray, kinds: np.ndarray) -> bool:
-        """Return whether the image of every cell is a cell, of the same kind (ne,): nodes may have images
-        where cells have none.
-        """
-        there, moved = (np.sort(c, axis=0) for c in (corners[:, self.cells], partner[corners]))
-        return np.array_equal(there, moved) and np.array_equal(kinds, kinds[self.cells])
+    def are_alike(self, kinds: np.ndarray) -> bool:
+        """Return whether the image of every cell is a cell of the same kind (ne,)."""
+        return self.exact and np.array_equal(kinds, kinds[self.cells])
 
     def of_functions(
         self, further: Functions, numbers: np.ndarray, signs: np.ndarray
@@ -81,6 +80,11 @@ def _normed(value: np.ndarray) -> np.ndarray:
 
 def _with_one(points: np.ndarray) -> np.ndarray:
     return np.vstack([points, np.ones(points.shape[1])])
+
+
+def images_of(corners: np.ndarray, reflections: Sequence[Reflection]) -> tuple[Images, ...]:
+    """Return the images of cells in mirror planes that are given by the unknowns of their nodes."""
+    return tuple(Images(corners, partner[::3] // 3) for partner, _ in reflections)
 
 
 def orbits(images: Sequence[Images], cells: int) -> tuple[np.ndarray, np.ndarray]:

@@ -50,7 +50,7 @@ class SolidMesh:
 
     def surface(self, moved: Mapping[str, np.ndarray]) -> Surface:
         """Return the boundary of the mesh, moved."""
-        return self.outline.surface(np.sum([*moved.values()], axis=0) if moved else None)
+        return self.outline.surface(self.motion(moved).ravel() if moved else None)
 
     def rows(self, name: str, chosen: np.ndarray) -> np.ndarray:
         """Return the displacements (3 k, n) of points of the surface by those of the nodes."""

@@ -19,13 +19,13 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.core.body import Block, Reflection
-from solidgear.core.body.parity import mirrored_basis, symmetric_bases
+from solidgear.core.body.parity import mirrored_basis, symmetric_basis
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.kernel.room import assembled
 from solidgear.core.models.size import size_of_mesh
 from solidgear.core.models.solid.block import Facets, ports_of, rigid_motions, seats_of
 from solidgear.core.models.solid.enriched import enrichment
-from solidgear.core.models.solid.images import Images
+from solidgear.core.models.solid.images import images_of
 from solidgear.core.models.solid.matrices import matrices_by_images
 from solidgear.core.models.solid.mesh import SolidMesh
 
@@ -56,20 +56,19 @@ def blocks_by_parity(
     size = size_of_mesh(mesh.mesh, mesh.element, mirrors=True)
     assembled(size.entries, size.unknowns)
     materials = [segment.material for segment in scene.segments]
-    images = [Images(mesh.mesh.t, partner[::3] // 3) for partner, _ in reflections[:2]]
+    images = images_of(mesh.mesh.t, reflections[:2])
     stiffness, mass, nodes = matrices_by_images(mesh, materials, images)
     seats = seats_of(mesh, scene, wanted, facets_of)
     ports = ports_of(mesh, scene, wanted, seats)
     rigid, y = rigid_motions(mesh.nodes), np.repeat(mesh.nodes[1], 3)
     enrich = partial(enrichment, mesh, materials, seats, reflections=reflections)
-    bases = symmetric_bases(len(y), reflections[:2])
     summed = (3 * nodes[:, None] + np.arange(3)).ravel()
     blocks: list[Block] = []
     for parity, (name, components) in KINDS.items():
         if name == "bending_x" and len(reflections) == 3:
             blocks.append(_turned(blocks[0], name, components, parity, reflections[2]))
             continue
-        basis = bases[parity]
+        basis = symmetric_basis(len(y), reflections[:2], parity)
         near, first = basis[summed], _first_of(basis)
         block = Block(
             name,
