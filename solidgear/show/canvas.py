@@ -25,6 +25,8 @@ AXES = ("#ff6347", "#2e8b57", "#0000ff")
 CORNER = (0.2, 0.34)
 #: colours of a scale
 STEPS = 256
+#: foot and head of a scale as shares of the height of the picture
+BAR = (0.02, 0.048)
 
 
 def surface_of(points: np.ndarray, *faces: np.ndarray) -> PolyData:
@@ -66,25 +68,24 @@ class Canvas:
     """A white picture of so many pixels, seen along a parallel projection."""
 
     def __init__(self, width: int, height: int):
-        # the second brings fonts, and is not called
+        # the others bring fonts and what draws, and are not called
         from vtkmodules import (
             vtkRenderingCore,
             vtkRenderingFreeType,  # noqa: F401
-            vtkRenderingOpenGL2,
+            vtkRenderingOpenGL2,  # noqa: F401
         )
 
         self._window = vtkRenderingCore.vtkRenderWindow()
         self._window.SetOffScreenRendering(True)
         self._window.SetSize(width, height)
-        # edges are smoothed by drawing all several times as large instead
+        # edges are smoothed in the picture instead: several samples a pixel take more memory and time
         self._window.SetMultiSamples(0)
         self._renderer = vtkRenderingCore.vtkRenderer()
         self._renderer.SetBackground(1, 1, 1)
         self._renderer.AutomaticLightCreationOff()
-        smooth = vtkRenderingOpenGL2.vtkSSAAPass()
-        smooth.SetDelegatePass(vtkRenderingOpenGL2.vtkRenderStepsPass())
-        self._renderer.SetPass(smooth)
+        self._renderer.UseFXAAOn()
         self._window.AddRenderer(self._renderer)
+        self._bar = np.empty((0, 3), np.uint8)  # colours of a scale, a pixel each
 
     def aim(self, middle: np.ndarray, back: np.ndarray, upward: np.ndarray, height: float) -> None:
         """Look at a point from `back` of it, `height` of the scene filling the picture."""
@@ -178,34 +179,32 @@ class Canvas:
         self._renderer.AddActor(actor)
         return actor
 
-    def words(self, words: str, height: float, size: int) -> None:
-        """Write words in the middle of the picture, at a share of its height."""
+    def words(self, words: str, height: float, size: int, across: float = 0.5) -> None:
+        """Write words about a place at shares of the height and width of the picture."""
         from vtkmodules.vtkRenderingCore import vtkTextActor
 
         text = vtkTextActor()
         text.SetInput(words)
         text.GetPositionCoordinate().SetCoordinateSystemToNormalizedViewport()
-        text.SetPosition(0.5, height)
+        text.SetPosition(across, height)
         _set_font(text.GetTextProperty(), size)
         text.GetTextProperty().SetJustificationToCentered()
         self._renderer.AddViewProp(text)
 
     def bar(self, scale: Any, wide: float, size: int, labels: int, form: str) -> None:
         """Draw a scale of colours with its numbers at the foot, over a share of the width."""
-        from vtkmodules.vtkRenderingAnnotation import vtkScalarBarActor
+        import pyvista as pv
 
-        bar = vtkScalarBarActor()
-        bar.SetLookupTable(scale)
-        bar.SetMaximumNumberOfColors(STEPS)
-        bar.SetOrientationToHorizontal()
-        bar.SetPosition((1 - wide) / 2, 0.02)
-        bar.SetWidth(wide)
-        bar.SetHeight(0.075)
-        bar.SetNumberOfLabels(labels)
-        bar.SetLabelFormat(form)
-        bar.UnconstrainedFontSizeOn()
-        _set_font(bar.GetLabelTextProperty(), size)
-        self._renderer.AddViewProp(bar)
+        colours = pv.convert_array(scale.GetTable())[:, :3]
+        width = round(wide * self._window.GetSize()[0])
+        # VTK's own bar has its numbers beside their places until all is drawn once more
+        self._bar = colours[np.arange(width) * len(colours) // width]
+        ends = scale.GetRange()
+        values = (
+            np.geomspace(*ends, labels) if scale.UsingLogScale() else np.linspace(*ends, labels)
+        )
+        for place, value in zip(np.linspace(0, 1, labels), values):
+            self.words(form % value, BAR[1] + 0.01, size, (1 - wide) / 2 + wide * place)
 
     def axes(self) -> None:
         """Draw the axes in the lower left, as they stand to the viewer: after :meth:`aim`."""
@@ -254,9 +253,12 @@ class Canvas:
         image = pv.wrap(seen.GetOutput())
         width, height, _ = image.dimensions
         # from the foot up
-        pixels = image.active_scalars.reshape(height, width, 3)[::-1].copy()
+        pixels = image.active_scalars.reshape(height, width, 3).copy()
+        foot, head = (round(share * height) for share in BAR)
+        left = (width - len(self._bar)) // 2
+        pixels[foot:head, left : left + len(self._bar)] = self._bar
         self._window.Finalize()
-        return pixels
+        return pixels[::-1]
 
 
 def scale_of(ramp: Sequence[str], ends: tuple[float, float], *, log: bool = False) -> Any:
