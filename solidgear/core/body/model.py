@@ -19,6 +19,7 @@ from solidgear.core.body.cache import Cache
 from solidgear.core.body.mass import ScalarMass
 from solidgear.core.body.sections import Sections, from_points, signed
 from solidgear.core.body.surface import Drawing, Surface
+from solidgear.core.body.symmetric import Symmetric
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.factoring import Factoring
@@ -71,7 +72,7 @@ class Enrichment:
     the cells of it: right for motions that are symmetric or antisymmetric about the planes.
     """
 
-    stiffness: sp.csr_matrix  #: (s, s) N/m
+    stiffness: Symmetric  #: (s, s) N/m
     coupling: sp.csr_matrix  #: (s, n) stiffness between them and the unknowns of the mesh, N/m
     #: mass between them and the unknowns of the mesh, kg: (s, n), or (s / c, n / c) where it is the
     #: same for each of c components, which are numbered together

@@ -17,6 +17,7 @@ from skfem import Element, ElementQuad1, ElementQuad2, Mesh
 from skfem.assembly import Dofs
 from skfem.element import ElementQuadP
 
+from solidgear.core.body.symmetric import Symmetric
 from solidgear.core.kernel.room import assemblable, assembled
 
 BATCH_BYTES = 4e6
@@ -186,8 +187,10 @@ def unknowns(mesh: Mesh, element: Element) -> np.ndarray:
 
 
 class Pattern:
-    """Sparse pattern of an element connectivity (nb, ne), reused for every matrix on it, with rows
-    for other numbers (nr, ne) of each element where these are given.
+    """Sparse pattern of an element connectivity (nb, ne), reused for every matrix on it.
+
+    With rows for the functions of an element from the `first` on alone, the columns of these are
+    held on and above the diagonal, since matrices are symmetric; others have lesser numbers.
 
     Examples
     --------
@@ -203,14 +206,16 @@ class Pattern:
            [ 0., -2.,  2.]])
     """
 
-    def __init__(self, dofs: np.ndarray, rows: np.ndarray | None = None):
-        rows = dofs if rows is None else rows
-        #: number of unknowns, and of those that have rows
-        self.n, self.of_rows = int(dofs.max()) + 1, int(rows.max()) + 1
+    def __init__(self, dofs: np.ndarray, first: int = 0):
+        rows = dofs[first:]
+        least = int(rows.min()) if first else 0
+        #: number of unknowns, of those before any that has a row, and of those that have rows
+        self.n, self.before, self.of_rows = int(dofs.max()) + 1, least, int(rows.max()) + 1 - least
         nb, ne = dofs.shape
         nr = len(rows)
         assemblable(ne, nb, nr)
-        numbers, row_numbers = (np.ascontiguousarray(d.T, np.int32) for d in (dofs, rows))
+        numbers = np.ascontiguousarray(dofs.T, np.int32)
+        row_numbers = np.ascontiguousarray(rows.T, np.int32) - np.int32(least)
         # Element entries row by row, each row being an unknown of an element.  A transposition is a
         # counting sort by column that leaves rows in order: columns first, then rows.
         slots = np.arange(ne * nb, dtype=np.int32).reshape(ne, nb)
@@ -224,13 +229,21 @@ class Pattern:
             shape=(self.n, self.of_rows),
         ).tocsc()
         # a change of column opens a new entry, and so does a change of row
-        first = np.ones(entries.nnz, bool)
-        np.not_equal(entries.indices[1:], entries.indices[:-1], out=first[1:])
-        first[entries.indptr[:-1][np.diff(entries.indptr) > 0]] = True
+        opens = np.ones(entries.nnz, bool)
+        np.not_equal(entries.indices[1:], entries.indices[:-1], out=opens[1:])
+        opens[entries.indptr[:-1][np.diff(entries.indptr) > 0]] = True
+        below = np.zeros(entries.nnz, bool)
+        if first:
+            row = np.arange(least, least + self.of_rows, dtype=np.int32)
+            below = entries.indices < np.repeat(row, np.diff(entries.indptr))
+            below &= entries.indices >= least
+            opens &= ~below
+        starts = np.flatnonzero(opens)
+        number = np.cumsum(opens, dtype=np.int32) - 1
+        number[below] = len(starts)  # nothing reads that one
         #: place of every entry of every element matrix among the entries of the assembled one
         self.place = np.empty((ne, nr * nb), np.int32)
-        self.place.ravel()[entries.data] = np.cumsum(first, dtype=np.int32) - 1
-        starts = np.flatnonzero(first)
+        self.place.ravel()[entries.data] = number
         self.indices = entries.indices[starts]
         self.indptr = np.searchsorted(starts, entries.indptr).astype(np.int32)
 
@@ -246,9 +259,9 @@ class Sum:
 
     def __init__(self, pattern: Pattern, components: int):
         self.pattern, self.c = pattern, components
-        entries = len(pattern.indices) * components**2
+        entries = (len(pattern.indices) + 1) * components**2
         assembled(entries, pattern.n * components)
-        self.data = np.zeros(entries)
+        self._data = np.zeros(entries)
 
     def add(self, elements: slice | np.ndarray, values: np.ndarray) -> None:
         """Add element matrices (c, c, m, nr, nb), component of row and column first; of one
@@ -257,7 +270,12 @@ class Sum:
         c = self.c
         places = self.pattern.place[elements].ravel() * np.intp(c * c)
         for k, plane in enumerate(values.reshape(c * c, -1)):
-            np.add.at(self.data[k:], places, plane)
+            np.add.at(self._data[k:], places, plane)
+
+    @property
+    def data(self) -> np.ndarray:
+        """Entries, those of the components of a node together."""
+        return self._data[: -(self.c**2)]
 
     def matrix(self) -> sp.csr_matrix:
         """Return the assembled (rows c, n c) matrix, with unknowns grouped by node."""
@@ -268,21 +286,28 @@ class Sum:
             (self.data.reshape(-1, c, c), p.indices, p.indptr), shape=(p.of_rows * c, p.n * c)
         ).tocsr()
 
-    def divided(self, first: int) -> tuple[sp.csr_matrix, sp.csr_matrix]:
-        """Return the part in the columns of nodes before one, and the part in those from it on."""
+    def before(self) -> sp.csr_matrix:
+        """Return the part in the columns of unknowns before any that has a row."""
+        p = self.pattern
+        return self._part(p.indices < p.before, 0, p.before)
+
+    def symmetric(self) -> Symmetric:
+        """Return the part in the columns of unknowns that have rows."""
         p, c = self.pattern, self.c
-        data = self.data.reshape(-1, c, c)
-        after = p.indices >= first
-        parts = []
-        for chosen, offset, width in ((~after, 0, first), (after, first, p.n - first)):
-            count = np.concatenate([[0], np.cumsum(chosen)])
-            parts.append(
-                sp.bsr_matrix(
-                    (data[chosen], p.indices[chosen] - offset, count[p.indptr]),
-                    shape=(p.of_rows * c, width * c),
-                ).tocsr()
-            )
-        return parts[0], parts[1]
+        upper = self._part(p.indices >= p.before, p.before, p.of_rows)
+        row = np.repeat(np.arange(c * p.of_rows, dtype=np.int32), np.diff(upper.indptr))
+        upper.data[upper.indices < row] = 0.0  # of blocks on the diagonal
+        upper.eliminate_zeros()
+        return Symmetric(upper)
+
+    def _part(self, chosen: np.ndarray, offset: int, width: int) -> sp.csr_matrix:
+        """Return chosen entries, of some columns."""
+        p, c = self.pattern, self.c
+        count = np.concatenate([[0], np.cumsum(chosen)])
+        return sp.bsr_matrix(
+            (self.data.reshape(-1, c, c)[chosen], p.indices[chosen] - offset, count[p.indptr]),
+            shape=(p.of_rows * c, width * c),
+        ).tocsr()
 
 
 def batches(elements: np.ndarray, bytes_each: float) -> list[np.ndarray]:

@@ -32,6 +32,7 @@ import scipy.sparse as sp
 
 from solidgear.core import Block, rotation
 from solidgear.core.body.model import Enrichment
+from solidgear.core.body.symmetric import Symmetric
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.enriched import Addition, Seat
@@ -263,7 +264,7 @@ def _enrichment(
     tied = np.arange(more.count)
     tied[functions.slave] = functions.master
     return Enrichment(
-        wave.spread(back @ more.stiffness @ t),
+        Symmetric(sp.triu(wave.spread(back @ more.stiffness.tocsr() @ t), format="csr")),
         wave.spread(back @ more.coupling),
         wave.spread(back @ inertia),
         np.arange(size),

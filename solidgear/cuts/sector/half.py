@@ -30,6 +30,7 @@ import scipy.sparse as sp
 
 from solidgear.core import Block, Surface, rotation
 from solidgear.core.body.model import Enrichment
+from solidgear.core.body.symmetric import Symmetric
 from solidgear.core.kernel.attachment import Attached, with_ports
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.drawing import copied
@@ -208,8 +209,9 @@ def _enrichment(
         else:
             rows.append(_motion(name, half, gram, more.loads(seat), t))
     inertia = sp.kron(more.inertia, sp.identity(3))
+    stiffness = _block_matrix(name, more.stiffness.tocsr())
     return Enrichment(
-        (copies * (t.T @ _block_matrix(name, more.stiffness) @ t)).tocsr(),
+        Symmetric(sp.triu(copies * (t.T @ stiffness @ t), format="csr")),
         (copies * (t.T @ _block_matrix(name, more.coupling))).tocsr(),
         (copies * (t.T @ _block_matrix(name, inertia))).tocsr(),
         np.arange(len(function)),

@@ -21,6 +21,7 @@ from skfem.refdom import RefHex, RefTet
 
 from solidgear.core.body import Reflection
 from solidgear.core.body.model import Enrichment
+from solidgear.core.body.symmetric import Symmetric
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import Tabulation, unknowns
 from solidgear.core.kernel.lobatto import gauss_box
@@ -214,7 +215,7 @@ class Addition:
     further: Further
     numbers: np.ndarray  #: (k, ne) functions of every cell
     signs: np.ndarray  #: (k, ne) that they have there
-    stiffness: sp.csr_matrix  #: (3 s, 3 s) N/m
+    stiffness: Symmetric  #: (3 s, 3 s) N/m
     coupling: sp.csr_matrix  #: (3 s, 3 n) stiffness between them and the nodes of the mesh, N/m
     inertia: sp.csr_matrix  #: (s, n) mass between them and the nodes, of every component, kg
     summed: np.ndarray  #: (s,) which of them the matrices have rows for
@@ -246,10 +247,9 @@ class Addition:
             multiples,
             first=len(m.dofs),
         )
-        coupling, own = stiffness.divided(n)
+        coupling, own = stiffness.before(), stiffness.symmetric()
         del stiffness  # as large as both
-        between, _ = mass.divided(n)
-        return cls(m, further, numbers, signs, own, coupling, between, summed, images)
+        return cls(m, further, numbers, signs, own, coupling, mass.before(), summed, images)
 
     @property
     def count(self) -> int:
@@ -317,11 +317,12 @@ def enrichment(
             continue
         gram, _ = weighed(seat.pieces(m), seat.place, n)
         rows.append(rigid_part(gram, more.loads(seat), components).toarray())
-    matrices = more.stiffness, more.coupling, more.inertia
-    for matrix in matrices:
+    for matrix in (more.stiffness.upper, more.coupling, more.inertia):
         matrix.data *= copies  # in place: they are the largest arrays of an error bar
     return Enrichment(
-        *matrices,
+        more.stiffness,
+        more.coupling,
+        more.inertia,
         (3 * more.summed[:, None] + np.arange(3)).ravel(),
         np.vstack([np.zeros((0, 3 * count)), *rows]),
         moves.ravel(),

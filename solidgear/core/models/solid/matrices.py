@@ -60,11 +60,10 @@ def integrals(
     """Sum up stiffness (3n, 3n) and mass of one component (n, n) in some basis, tabulated at the
     points of the weights, whose functions have numbers (nb, ne) and signs (nb, ne) in the cells;
     each cell counts so many times (ne,).  Rows are those of the `first` function of a cell and of
-    all after it, whose numbers are counted from the least of them.
+    all after it.
     """
     nb, nq = basis.value.shape
-    rows = numbers[first:]
-    pattern = Pattern(numbers, rows - rows.min() if first else None)
+    pattern = Pattern(numbers, first)
     stiffness, mass = pattern.sum(3), pattern.sum()
     # products of basis functions, and of reference gradients, of which straight elements take one
     # multiple each
