@@ -199,12 +199,12 @@ class Canvas:
         width = round(wide * self._window.GetSize()[0])
         # VTK's own bar has its numbers beside their places until all is drawn once more
         self._bar = colours[np.arange(width) * len(colours) // width]
-        ends = scale.GetRange()
-        values = (
-            np.geomspace(*ends, labels) if scale.UsingLogScale() else np.linspace(*ends, labels)
-        )
-        for place, value in zip(np.linspace(0, 1, labels), values):
-            self.words(form % value, BAR[1] + 0.01, size, (1 - wide) / 2 + wide * place)
+        low, high = scale.GetRange()
+        for share in np.linspace(0, 1, labels):
+            value = low + share * (high - low)
+            if scale.UsingLogScale():
+                value = low * (high / low) ** share
+            self.words(form % value, BAR[1] + 0.01, size, (1 - wide) / 2 + wide * share)
 
     def axes(self) -> None:
         """Draw the axes in the lower left, as they stand to the viewer: after :meth:`aim`."""
