@@ -443,6 +443,17 @@ def test_interrupt_between_meshes_keeps_the_coarser_one(rod):
     assert record["unknowns"] == found.solutions["solid"].body.size
 
 
+@pytest.mark.parametrize("model", ["timoshenko", "harmonic", "solid"])
+def test_a_solution_without_matrices_shows_the_same_shapes(found, model):
+    solved = found.solutions[model]
+    drawn = solved.without_matrices()
+    assert all(block.stiffness.nnz == block.mass.nnz == 0 for block in drawn.body.blocks)
+    vectors = solved.modes.modes[0].vectors[0]
+    moved = drawn.body.surface(vectors).displacement
+    assert (moved == solved.body.surface(vectors).displacement).all() and moved.any()
+    assert drawn.quantities == solved.quantities and drawn.body.size == solved.body.size
+
+
 def test_interrupt_before_the_first_result(overhung, tmp_path):
     found = compare(overhung, ("euler",), progress=Interrupt("euler: build"))
     assert (

@@ -176,6 +176,7 @@ def compare(
             solved = partial(pictures.begin_early, loaded) if renders else nothing
             comparison = compared(loaded, names, settings=chosen, progress=progress, solved=solved)
             comparison.began = BEGUN  # imports and reading count as well
+            comparison.let_matrices_go()
             complete = comparison.record.complete
             drawn = renders and complete
             comparison.write_report(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import functools
+import gc
 import logging
 import os
 import time
@@ -71,6 +72,12 @@ class Comparison(Displayed):
     solutions: dict[str, Solution]  #: bodies and mode shapes behind the record, by model
     #: when the run began, by ``time.perf_counter``, s
     began: float = field(default_factory=time.perf_counter)
+
+    def let_matrices_go(self) -> None:
+        """Give back the memory of what is solved: a report draws and writes, and needs shapes alone."""
+        self.solutions = {model: s.without_matrices() for model, s in self.solutions.items()}
+        gc.collect()  # guards hold them in circles
+        give_back()
 
     @property
     def results(self) -> dict:

@@ -278,6 +278,15 @@ class Body(Displayed):
             )
         return families[n]
 
+    def without_matrices(self) -> Body:
+        """The body to be drawn alone, without what it was solved with: its matrices are empty."""
+
+        def without(block: Block) -> Block:
+            nothing = sp.csr_matrix((block.size, block.size))
+            return replace(block, stiffness=nothing, mass=nothing, enrich=None, swirl=None)
+
+        return replace(self, blocks=tuple(map(without, self.blocks)), cache=Cache())
+
     def surface(self, vectors: Mapping[int, np.ndarray]) -> Surface:
         """Surface of the body moved by a vector of unknowns.
 

@@ -8,7 +8,7 @@ cross-sections at every station, as a beam sees a solid.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -65,6 +65,14 @@ class Solution:
     def quantities(self) -> dict[Quantity, float]:
         """Compared numbers with the ties of the scene."""
         return self.ties[SCENE].quantities
+
+    def without_matrices(self) -> Solution:
+        """Return what numbers and pictures are taken from, which is much less."""
+
+        def without(answers: dict[str, Answer]) -> dict[str, Answer]:
+            return {k: replace(a, body=a.body.without_matrices()) for k, a in answers.items()}
+
+        return replace(self, ties=without(self.ties), variants=without(self.variants))
 
     def worst_bar(self, names: Iterable[Quantity] = JUDGED) -> float | None:
         """Return the largest error bar over some quantities, tied as in the scene; None where there
