@@ -90,22 +90,28 @@ def _assembly_seconds(fidelity: str) -> Iterator[list[float]]:
     if fidelity != "solid":
         yield spent
         return
-    from solidgear.core.models.solid import block as solid_block
+    from solidgear.core.models.solid import block, parity
 
-    plain = solid_block._matrices
+    def timed(plain):
+        def taking(*args, **kwargs):
+            start = time.perf_counter()
+            try:
+                return plain(*args, **kwargs)
+            finally:
+                spent[0] += time.perf_counter() - start
 
-    def timed(*args, **kwargs):
-        start = time.perf_counter()
-        try:
-            return plain(*args, **kwargs)
-        finally:
-            spent[0] += time.perf_counter() - start
+        return taking
 
-    solid_block._matrices = timed
+    # of hexahedra around the axis, and of all other meshes
+    makers = [(parity, "matrices_by_images"), (block, "_matrices")]
+    plain = [getattr(module, name) for module, name in makers]
+    for (module, name), maker in zip(makers, plain):
+        setattr(module, name, timed(maker))
     try:
         yield spent
     finally:
-        solid_block._matrices = plain
+        for (module, name), maker in zip(makers, plain):
+            setattr(module, name, maker)
 
 
 def mine(heat: Heat, who: str, scene, fidelity, options, *, free: bool = False, **more) -> Lane:
