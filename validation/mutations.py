@@ -1241,7 +1241,15 @@ MUTATIONS = (
         "tests/test_nonlinear_varying.py::test_tongues_of_mathieu_by_hill_and_by_floquet",
     ),
     Mutation(
-        "motion in time: the stiffness stands still",
+        "motion in time: the stiffness of straight pieces stands still",
+        "solidgear/backlash/solver/integrated.py",
+        "Integrated._straight_slope",
+        "1 + around[b:c]",
+        "1 + 0.0 * around[b:c]",
+        "tests/test_nonlinear_varying.py::test_balance_and_time_agree_on_every_law",
+    ),
+    Mutation(
+        "motion in time: the stiffness of curved laws stands still",
         "solidgear/backlash/solver/integrated.py",
         "Integrated._stretches",
         "self.angle(t)",
