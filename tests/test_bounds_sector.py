@@ -135,7 +135,7 @@ def test_no_number_of_a_vertex_matters(monkeypatch):
 
 
 @pytest.mark.usefixtures("small_residuals")
-@pytest.mark.long
+@pytest.mark.slow
 def test_waves_around_err_as_in_the_whole():
     """Blocks without ports, whose phase on the cut face is another one."""
     scene, name = PARTS["straight"], "ovalising n=2 1"
@@ -149,7 +149,7 @@ def test_waves_around_err_as_in_the_whole():
 
 
 @pytest.mark.usefixtures("small_residuals")
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_port_follows_the_material_in_one_order_more_too():
     scene = PARTS["straight"]
     body = entire("straight")

@@ -209,7 +209,7 @@ def test_bars_hold_and_are_hardly_wider_than_errors(element):
     assert np.all(one_side > 1) and np.median(one_side) < 2 and np.all(one_side < 3)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_bars_hold_at_rigid_seats():
     found = judged(stepped("rigid"), "tet10", **COARSE["tet10"])
     _, one_side = over_error(found, truth("rigid"))
@@ -263,7 +263,7 @@ def test_columns_that_were_found_long_ago_keep_none_waiting():
     assert search.energy[:-1] == pytest.approx(exact, rel=1e-9)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_half_a_part_has_the_bars_of_the_whole():
     scene = sg.load("geometry/pinion_keyed.toml")
     widths = []

@@ -203,7 +203,7 @@ def test_the_least_safety_of_several_notches_counts():
     }
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_worst_notch_in_the_worst_case_counts():
     """The least safety of all notches in the case that is worse, as it has it by itself."""
     edited = tables(GEOMETRY / "pinion_filleted.toml") | {"material": "42CrMo4"}

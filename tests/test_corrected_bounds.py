@@ -125,7 +125,7 @@ def energies(solid):
     return out
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_energies_of_cells_sum_up_to_those_of_the_body(scene, body):
     origin = body.cache.find(Origin)
     scale = np.diag(flexibility(body).matrix)
@@ -184,7 +184,7 @@ def test_cells_and_modes(scene, body, answer, bars):
     assert of_modes[mode.name] == pytest.approx(bars.error_bars["bending 1"].width, rel=0.05)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_modes_of_halves_that_a_bearing_couples_have_the_bars_of_halves_that_stand_alone(
     scene, body, answer, bars
 ):

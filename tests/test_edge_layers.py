@@ -160,7 +160,7 @@ def test_what_a_mesh_can_do_it_can_do_with_layers(tie):
     assert ends.min() > -1e-7 and ends.max() > 1e-3
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_layers_leave_less_error_of_which_one_order_more_finds_more():
     scene = stepped()
     exact = condense(

@@ -125,7 +125,7 @@ def squeezed(train, gear, patched, layers):
     return full / float((moved**2 / (level + w2)).sum()), solid
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_patch_gives_way_as_on_a_full_3d_gear(train, gear, patched):
     """A displacement mesh is too stiff, this one by 1.3 % (0.6 % with a layer at its edges)."""
     ratio, _ = squeezed(train, gear, patched, layers=0)
@@ -226,7 +226,7 @@ def test_on_rigid_shafts_they_add_nothing(train, usual):
 SIDES = ("pinion", "gear")
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_modes_say_what_is_driven(train, usual):
     found = train_modes(usual, "harmonic", "harmonic", max_frequency=4000.0)
     assert list(found.undriven) == ["gear"] and list(found.undriven["gear"]) == [2, 3]

@@ -531,7 +531,7 @@ def test_a_mode_has_one_name_whatever_solid_finds_it():
     assert found[0] == found[1] == ["torsion 1", "axial 1", "breathing 1", "axial 2", "breathing 2"]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_default_solid_lies_above_the_harmonic_one_by_what_its_cells_around_leave():
     """Both are Ritz methods on the same body: frequencies come from above, the coarser mesh's more.
     Twelve cells around are three to a wave of n = 4, twenty-four are six.

@@ -46,7 +46,7 @@ def ends(scene, bounds, place):
     ]
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_bars_hold_at_a_seat_narrower_than_its_cells():
     scene = bar(1.5)
     places = {"C_thx": 3, "C_yy": 1}

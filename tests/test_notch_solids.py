@@ -156,7 +156,7 @@ def test_moduli_of_a_hole_are_those_of_the_norm():
     assert moduli.torsion == pytest.approx(math.pi * d**3 / 16 - r * d**2 / 3)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_long_keyway_in_torsion_is_prandtls():
     """Far from its ends it is the torsion of a prism: a Poisson problem of its section."""
     long = KEY.with_changes(length=0.16, radius=0.04 / 48)

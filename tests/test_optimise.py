@@ -42,7 +42,7 @@ def test_an_optimum_inside_a_range_is_found_and_one_at_its_end_is_told(span):
     assert any("at the end of its range" in sentence for sentence in found.sentences)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_an_optimum_at_the_file_and_one_away_from_it_are_at_an_end_too():
     # where that is the file, and not where the file lies outside of the range
     as_it_is = sg.optimise(SHAFT, ["segment.middle.diameter=70 mm:80 mm"], "min C_zz", **BEAM)

@@ -154,7 +154,7 @@ def test_a_law_with_corners_has_no_balance_of_two_tones():
         TwoTone(fast, slow, TONES, (2, 2))
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_sidebands_by_two_tones_are_those_in_time():
     # twice the speed of the source: half as many steps a turn
     stage = Stage(Reducer(Design(), rpm=16000.0))

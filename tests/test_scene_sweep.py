@@ -34,7 +34,7 @@ def test_a_row_is_what_the_file_changed_by_hand_gives(tmp_path):
     assert rows["f1_hz"][1] == pytest.approx(sg.modes(body, scene, n=2).frequency_hz[-2], rel=1e-9)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_bar_holds_what_a_tighter_tolerance_changes():
     vary = "bearing.A.seat_width=20 mm"
     loose, tight = (sg.sweep(SHAFT, vary, tolerance=tol, n=2) for tol in (0.1, 5e-3))

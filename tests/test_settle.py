@@ -246,7 +246,7 @@ def test_a_named_3d_solid_is_as_coarse_as_the_tolerance_allows(run, scene):
 
 
 # --------------------------------------------------------------------------- sweep
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_sweep_settles_on_the_scene_and_at_the_ends_of_what_varies(run, scene, tmp_path):
     words = ["sweep", SCENE, "--tol", "0.02", "-n", "3", "-o", "rows.csv"]
     words += ["--vary", "bearing.1.scale=0.5,1"]

@@ -44,7 +44,7 @@ def evenly_loaded(teeth, r):
     return teeth.matrix(*places(teeth, r)).mean() * teeth.wheel.face_width
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_ring_of_all_pitches_solved_at_once_moves_as_the_waves_of_one():
     teeth = coarse(replace(HELICAL, teeth=12, shift=0.4), hold=12e-3)
     count, mesh, inner = teeth.wheel.count, teeth.mesh, teeth.mesh.inner(True)
@@ -203,7 +203,7 @@ def test_teeth_alone_hardly_know_where_their_rim_is_held():
     assert alone[0] / alone[1] == pytest.approx(1.13, abs=0.03)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_free_rim_is_softer_where_it_is_thin_and_not_where_it_is_thick():
     fixed, free = coarse(), coarse(free=True)
     assert np.array_equal(fixed.port_compliance, free.port_compliance)

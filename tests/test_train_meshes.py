@@ -189,7 +189,7 @@ def test_gears_at_rest_are_within_the_tolerance(train, fine, tol):
     assert largest > 0.0
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_shafts_that_teeth_drive_where_they_touch_have_meshes_within_the_tolerance(train):
     local = train.with_changes(meshes=(train.meshes[0].with_changes(local_harmonics=(2,)),))
     usual, finer = (Assembly(local, kept=6, tol=tol) for tol in (1e-2, 2e-3))

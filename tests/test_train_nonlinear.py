@@ -41,7 +41,7 @@ def solids(assembly, teeth):
     return with_backlash(assembly, SOLIDS, teeth, 1100.0, 300.0)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
     first, second = solids.lost
     assert first.low == pytest.approx(572.0, abs=1.0)
@@ -57,7 +57,7 @@ def test_the_linear_peak_hides_where_teeth_part_and_jump(solids):
     assert solids.linear_loudest[1] == pytest.approx(16_060.0, rel=5e-3)
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_lumped_shafts_are_enough_for_jumps_and_beams_are_not(assembly, teeth, solids):
     others = [with_backlash(assembly, [m], teeth, 1100.0, 300.0) for m in ("lumped", "timoshenko")]
     lumped, beams = BacklashStudy(assembly.train, (solids, *others), 0.044).sufficiency()

@@ -399,7 +399,7 @@ def test_misalignment_of_bevel_gears_by_rigid_motions(bevel, motion, told):
 
 
 # ----------------------------------------------------------------------- bars and verdict
-@pytest.mark.long
+@pytest.mark.slow
 def test_bars_hold_what_a_finer_mesh_changes(helical):
     point = OperatingPoint(torque=100.0)
     coarse = Assembly(helical, kept=6, settings={"harmonic": {"order": 2, "layers": 1}})

@@ -256,7 +256,7 @@ def three():
     return Assembly(train), Assembly(train.with_changes(meshes=(first, stiffer)))
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_numbers_of_three_shafts_are_those_of_each_train_alone(three):
     mix = ("euler", "timoshenko", "euler")
     how = {"mesh": "middle-output", "highest_hz": 700.0}

@@ -77,7 +77,7 @@ def test_ranges_write_their_chart_and_the_numbers_of_the_command(gearbox, tmp_pa
     assert written["scene"] == "gearbox_catalogue" and len(written["numbers"]) > 4
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_inputs_that_do_not_act_on_one_another_add_up_as_squares():
     scene = sg.load(STEPPED).with_changes(ask=sg.Ask(modes=3))
     scene = with_ranges(scene, {"material.E": "± 5 %", "material.density": "± 5 %"})

@@ -78,7 +78,7 @@ def whole(found):
     return True
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_layers_at_a_shoulder_take_away_its_part_of_the_bar_and_no_other():
     coarse, fine = (
         places(shaft(), "C_thx", {**HEX, "layers": n, "radial_layers": n}) for n in (1, 2)
