@@ -19,7 +19,7 @@ from solidgear.core import load as read
 from solidgear.core.loading import case_sentence, under_case
 
 
-def load(source: Source, case: str | None = None) -> Scene:
+def load(source: Source, case: str | int | None = None) -> Scene:
     """Read a scene, whose bearings settle under a case of its loads, by default the first of several,
     which is printed, and print doubts about the file of its part.
     """
@@ -34,7 +34,7 @@ def load(source: Source, case: str | None = None) -> Scene:
     return scene
 
 
-def document_under(source: Source, case: str | None) -> Document:
+def document_under(source: Source, case: str | int | None) -> Document:
     """Return the document of a scene with a case of its loads first, or as it is, and print the first
     of several where none is given.
     """

@@ -22,7 +22,7 @@ from solidgear.core import (
 )
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group
-from solidgear.show.options import CaseName, refuse
+from solidgear.show.options import CaseName, Named, refuse
 from solidgear.strength.load import AT_REST, driven
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
@@ -63,7 +63,7 @@ class Acting(Group):
         typer.Option("--of", help="Shaft of --torque: pinion or gear; the engine's shaft."),
     ] = None
     point: Annotated[
-        str | None, typer.Option("--point", help="Operating point of a train, by name or number.")
+        Named, typer.Option("--point", help="Operating point of a train, by name or number.")
     ] = None
     weight: Annotated[
         str | None,

@@ -110,7 +110,7 @@ def train_designs(
     names: Sequence[str],
     model: str | None,
     tol: float | None,
-    point: str | None,
+    point: str | int | None,
     every_point: bool,
 ) -> Designs:
     """Return the designs of a train, with the numbers of these names at an operating point or at all;

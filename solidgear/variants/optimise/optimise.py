@@ -89,7 +89,7 @@ def optimise(
     model: str | None = None,
     tol: float | None = None,
     most: int | None = None,
-    point: str | None = None,
+    point: str | int | None = None,
     every_point: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Optimum:

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from solidgear.core import LADDER, SolidgearError, Source, document_of
+from solidgear.core.arguments import checked
 from solidgear.variants.sweep.bearing_task import (
     BearingTask,
     bars_of_rows,
@@ -35,8 +36,8 @@ def task_of(
     """
     document = document_of(source)
     if document.describes_train:
-        return train_task(document, design, **how)
-    return shaft_task(document, design, progress=progress, **how)
+        return checked(train_task, "sweep")(document, design, **how)
+    return checked(shaft_task, "sweep")(document, design, progress=progress, **how)
 
 
 def shaft_task(

@@ -295,7 +295,7 @@ def train_task(
     ask: Iterable[str] = BY_DEFAULT,
     n: int | None = None,
     max_frequency: float | None = None,
-    point: str | None = None,
+    point: str | int | None = None,
     every_point: bool = False,
     reduction: str = "rubin",
     kept: int = KEPT,
