@@ -51,6 +51,7 @@ from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.judge.where import recorded_places
 from solidgear.core.ladder.model import LUMPED, SOLID
+from solidgear.core.loading import case_sentence
 from solidgear.core.machine.environment import environment
 from solidgear.core.quantity import FIRST_BENDING
 from solidgear.core.solve.mixtures import mixtures
@@ -97,6 +98,7 @@ def recorded(scene: Scene, findings: Findings) -> Record:
     out = Record(
         complete=findings.complete,
         scene=scene.as_dict(),
+        load_case=case_sentence(scene),
         port=ports[0],
         further_ports=ports[1:],
         attachments={
