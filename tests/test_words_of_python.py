@@ -92,6 +92,35 @@ def test_every_function_says_what_its_arguments_may_be(name):
     assert pickle.loads(pickle.dumps(function)) is function
 
 
+def test_a_tolerance_is_a_number_or_a_text():
+    for study in (
+        lambda tol: sg.stress(STEPPED, "euler", load="x=1 kN", tol=tol),
+        lambda tol: sg.sweep(STEPPED, "segment.left.diameter=45 mm,50 mm", tolerance=tol),
+        lambda tol: sg.optimise(STEPPED, "segment.left.diameter=45 mm:50 mm", "max f1", tol=tol),
+        lambda tol: sg.correlate(STEPPED, {"mode": [{"frequency": 800.0}]}, tol),
+        lambda tol: sg.identify(STEPPED, {"mode": [{"frequency": 800.0}]}, "material.E", tol=tol),
+    ):
+        for wrong in ("5 kg", -0.1, float("nan")):
+            with pytest.raises(SolidgearError, match="tol = .* is not usable"):
+                study(wrong)
+    assert sg.stress(STEPPED, "euler", load="x=1 kN", tol="5%").shafts
+
+
+def test_kinds_of_rows_stand_with_commas_or_one_by_one():
+    paths = "segment.left.diameter=45 mm,50 mm"
+    rows = sg.sweep(STEPPED, paths, model="euler", ask="answer, deflect", n=1)
+    assert {*rows.columns} == {
+        *sg.sweep(STEPPED, paths, model="euler", ask=["answer", "deflect"], n=1).columns
+    }
+    with pytest.raises(SolidgearError, match='of a shaft give one .* did you mean "stress"'):
+        sg.sweep(STEPPED, paths, ask="stres")
+
+
+def test_a_resonance_below_all_modes_ends_in_a_sentence():
+    with pytest.raises(SolidgearError, match="no elastic mode up to 572 Hz"):
+        sg.identify(STEPPED, {"mode": [{"frequency": 520.0}]}, "material.E", tol=0.05)
+
+
 def test_numbers_of_other_libraries_are_numbers():
     assert fits(np.int64(3), int) and fits(np.float32(0.1), float) and fits(np.array(2.0), float)
     assert not fits(True, float) and not fits(np.array([2.0]), float) and not fits(3.0, int)

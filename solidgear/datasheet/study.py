@@ -23,7 +23,7 @@ from solidgear.trains.loading import load_train
 
 def sheet(
     source: Source | Train,
-    tol: float | None = None,
+    tol: float | str | None = None,
     *,
     language: str = "en",
     speed: str | None = None,
@@ -95,7 +95,7 @@ def _of_train(
     source: Source | Train,
     acting: Acting,
     settings: StressSettings,
-    tol: float | None,
+    tol: float | str | None,
     speed: str | None,
     progress: Callable[[str], None],
 ) -> Datasheet:

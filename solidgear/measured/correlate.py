@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from solidgear.core import BarredMode, ModeName, Sheeted, Source, load, pinned, without_axis
+from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.plain import plain
 from solidgear.measured.alignment import Peak
 from solidgear.measured.computed import Computed, computed_up_to
@@ -169,7 +170,7 @@ class Correlation(Sheeted):
 def correlate(
     scene: Source,
     measured: Source | Measured,
-    tol: float | None = None,
+    tol: float | str | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Correlation:
     """Pair measured resonances with the modes of a scene.
@@ -207,7 +208,7 @@ def correlate(
     ['bending 1', 'bending 2']
     """
     scene, measured = load(scene), load_measured(measured)
-    tol = scene.ask.tolerance / 10 if tol is None else tol
+    tol = scene.ask.tolerance / 10 if tol is None else read_tolerance(tol)
     highest = measured.modes[-1].frequency
     correlation = _paired(measured, computed_up_to(scene, highest, tol, progress))
     if correlation.likeness.sentence or correlation.likeness.condition:

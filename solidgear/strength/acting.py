@@ -88,7 +88,7 @@ class Acting(Group):
     ] = None
 
     def read(
-        self, source: Source | Train, tol: float | None = None
+        self, source: Source | Train, tol: float | str | None = None
     ) -> tuple[Assembly, OperatingPoint]:
         """Return a train and its operating point, or a shaft under its load, with the error that
         meshes may leave; refuse options of the other.

@@ -37,8 +37,11 @@ Settings: TypeAlias = Mapping[str, Mapping[str, Any]] | Iterable[str] | None
 Waves: TypeAlias = str | Sequence[int] | None
 if TYPE_CHECKING:
     Harmonics: TypeAlias = Waves
+    #: of a command a number, of Python also a text
+    Tolerance: TypeAlias = float | str | None
 else:
     Harmonics = str | None
+    Tolerance = float | None
 
 
 class Reducing(TypedDict, total=False):
@@ -49,7 +52,7 @@ class Reducing(TypedDict, total=False):
     kept: int
     local_harmonics: Waves
     point: str | int | None
-    tol: float | None
+    tol: float | str | None
 
 
 @dataclass(frozen=True)
@@ -111,7 +114,7 @@ class Reduced(Reduction):
     """Options of every command on a train: how its shafts are reduced and meshed."""
 
     tol: Annotated[
-        float | None,
+        Tolerance,
         relative(
             "--tol",
             "Relative error that meshes of harmonic shafts may leave; by default a tenth of the "

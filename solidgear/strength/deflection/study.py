@@ -24,7 +24,7 @@ def deflect(
     load: str | Mapping[str, Any] | None = None,
     case: str | int | None = None,
     drive: Mapping[str, str | float] | list[str] | None = None,
-    tol: float | None = None,
+    tol: float | str | None = None,
     progress: Callable[[str], None] = lambda text: None,
 ) -> at_rest.Deflections:
     """Deflection of shafts at rest: displacements, misalignment of gears, bearing loads.

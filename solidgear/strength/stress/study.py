@@ -6,6 +6,7 @@ from collections.abc import Callable, Mapping
 from typing import Any
 
 from solidgear.core import SolidgearError, Source, explained, show
+from solidgear.core.judge.answer import read_tolerance
 from solidgear.strength.acting import Acting, Given
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
 from solidgear.strength.stress.conditions import Conditions
@@ -25,8 +26,8 @@ def stress(
     load: str | Mapping[str, Any] | None = None,
     case: str | int | None = None,
     drive: Mapping[str, str | float] | list[str] | None = None,
-    tol: float = ENOUGH,
-    local: float | None = None,
+    tol: float | str = ENOUGH,
+    local: float | str | None = None,
     conditions: Mapping[str, Any] | Conditions | None = None,
     duty: bool = False,
     progress: Callable[[str], None] = lambda text: None,
@@ -84,7 +85,9 @@ def stress(
         )
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
-    settings = StressSettings(tol, conditions, duty, local)
+    settings = StressSettings(
+        read_tolerance(tol), conditions, duty, None if local is None else read_tolerance(local)
+    )
     assembly, at = Acting(torque, of, point, weight, load, case, drive).read(source)
     with explained(source):
         return stress_at_rest(assembly, at, model, settings, progress)

@@ -87,7 +87,7 @@ def optimise(
     keep_sum: str | Iterable[str] = (),
     follow: str | Iterable[str] = (),
     model: str | None = None,
-    tol: float | None = None,
+    tol: float | str | None = None,
     most: int | None = None,
     point: str | int | None = None,
     every_point: bool = False,

@@ -45,7 +45,7 @@ def shaft_task(
     design: Design,
     *,
     model: str | None = None,
-    tolerance: float | None = None,
+    tolerance: float | str | None = None,
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
     reduction_tolerance: float | None = None,
@@ -71,7 +71,7 @@ def shaft_task(
 def _one_body(
     variants: BearingVariants,
     model: str | None,
-    tolerance: float | None,
+    tolerance: float | str | None,
     options: Mapping[str, Any],
     n: int | None,
     reduced: float,
