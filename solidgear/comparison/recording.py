@@ -51,10 +51,10 @@ from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.judge.where import recorded_places
 from solidgear.core.ladder.model import LUMPED, SOLID
-from solidgear.core.loading import case_sentence
 from solidgear.core.machine.environment import environment
 from solidgear.core.quantity import FIRST_BENDING
 from solidgear.core.solve.mixtures import mixtures
+from solidgear.show.remarks import load_case
 
 
 @dataclass
@@ -98,7 +98,7 @@ def recorded(scene: Scene, findings: Findings) -> Record:
     out = Record(
         complete=findings.complete,
         scene=scene.as_dict(),
-        load_case=case_sentence(scene),
+        load_case=load_case(scene),
         port=ports[0],
         further_ports=ports[1:],
         attachments={

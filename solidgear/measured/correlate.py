@@ -11,8 +11,16 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import BarredMode, ModeName, Sheeted, Source, load, pinned, without_axis
-from solidgear.core.judge.answer import read_tolerance
+from solidgear.core import (
+    BarredMode,
+    ModeName,
+    Sheeted,
+    Source,
+    load,
+    pinned,
+    read_tolerance,
+    without_axis,
+)
 from solidgear.core.plain import plain
 from solidgear.measured.alignment import Peak
 from solidgear.measured.computed import Computed, computed_up_to

@@ -31,9 +31,9 @@ from solidgear.core import (
     document_of,
     flexibility,
     pinned,
+    read_tolerance,
 )
 from solidgear.core.errors import names_in
-from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.loading import scene_of
 from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.core.springs import modes_on_springs

@@ -17,6 +17,7 @@ from solidgear.core import (
 )
 from solidgear.core import load as read
 from solidgear.core.loading import case_sentence, under_case
+from solidgear.show.words import capital
 
 
 def load(source: Source, case: str | int | None = None) -> Scene:
@@ -42,6 +43,12 @@ def document_under(source: Source, case: str | int | None) -> Document:
     if case is None and not document.describes_train and len(document.tables.get("case", ())) > 1:
         _print_case(document)
     return document
+
+
+def load_case(scene: Scene) -> str:
+    """Return the sentence of a report on the case of several under which bearings settled."""
+    sentence = case_sentence(scene)
+    return f"{capital(sentence)}." if sentence else ""
 
 
 def _print_case(source: Source) -> None:

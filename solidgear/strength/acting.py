@@ -14,12 +14,12 @@ from solidgear.core import (
     SceneError,
     SolidgearError,
     Source,
-    as_written,
     explained,
     is_train,
     name_of_source,
     show,
 )
+from solidgear.core.loading import as_written
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group
 from solidgear.show.options import CaseName, Named, refuse
@@ -154,10 +154,6 @@ class Acting(Group):
 
 def torques(drive: list[str] | Mapping[str, Any]) -> dict[str, float]:
     """Return torques by the place where each enters, N m, from ``B=115 N*m`` or a mapping."""
-    if not isinstance(drive, (Mapping, list, tuple)):
-        raise SolidgearError(
-            f'`drive` {show(drive)}: give places with their torques, such as {{"B": "115 N*m"}}'
-        )
     pairs = drive.items() if isinstance(drive, Mapping) else map(_torque, drive)
     out = {}
     for name, value in pairs:

@@ -34,7 +34,6 @@ from solidgear.show.viewer import TURNED, fragment_of
 from solidgear.show.words import (
     DASH,
     bar_percent,
-    capital,
     percent,
     plus_minus,
     seconds,
@@ -233,7 +232,7 @@ def numbers(record: Record, units: Units) -> Table:
     caption = f"At the lumped point {(record.scene.get('port') or {}).get('name', '')}".strip()
     if key:
         caption += f", by the {record.name(key)}"
-    case = f"{capital(record.load_case)}. " if record.load_case else ""
+    case = f"{record.load_case} " if record.load_case else ""
     remark = open_words.remark(record.open)
     end = remark or "open data of bearings or load are not included."
     return Table(

@@ -19,7 +19,7 @@ from solidgear.show.command import caution
 from solidgear.show.sheet import Sheet, Terminal
 from solidgear.show.table import MARK, Cell, Column, Table, word
 from solidgear.show.units import Units, in_ascii, units_named
-from solidgear.show.words import DASH, bar_percent, capital, count, hertz, seconds
+from solidgear.show.words import DASH, bar_percent, count, hertz, seconds
 
 #: validity -> how it is written in a narrow column
 VALID = {"yes": "yes", "no": "NO", "open": "?", "unknown": "?"}
@@ -138,7 +138,7 @@ def verdict_lines(record: Record) -> list[str]:
 
 def _closing(record: Record) -> list[str]:
     """Return lines below a verdict: cautions, ranges, modes counted, seconds and peak memory."""
-    lines = [f"{capital(record.load_case)}."] if record.load_case else []
+    lines = [record.load_case] if record.load_case else []
     lines += [caution(text) for text in record.warnings]
     ranges = ", ".join(" ".join(part) for part in open_words.parts(record.open, FIRST_BENDING))
     remark = open_words.remark(record.open)

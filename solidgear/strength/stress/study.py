@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any
 
-from solidgear.core import SolidgearError, Source, explained, show
-from solidgear.core.judge.answer import read_tolerance
+from solidgear.core import Source, explained, read_tolerance
 from solidgear.strength.acting import Acting, Given
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
 from solidgear.strength.stress.conditions import Conditions
@@ -79,10 +78,6 @@ def stress(
     >>> notch.name, f'{notch.forces[3]:.1f} N m', f'{notch.found.factors["bending"].value:.1f}'
     ('head fillet', '431.2 N m', '2.2')
     """
-    if not isinstance(conditions, (Conditions, Mapping, type(None))):
-        raise SolidgearError(
-            f'`conditions` {show(conditions)}: give keys with values, {{"roughness": "6.3 um"}}'
-        )
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
     settings = StressSettings(

@@ -6,8 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from solidgear.core import SolidgearError, Source
-from solidgear.core.judge.answer import read_tolerance
+from solidgear.core import SolidgearError, Source, read_tolerance
 from solidgear.variants.optimise.wish import FIRST, Rows
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry

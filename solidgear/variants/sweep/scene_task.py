@@ -16,8 +16,8 @@ from solidgear.core import (
     Source,
     as_supports,
     build,
+    read_tolerance,
 )
-from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.judge.solving import answer_of_body
 from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of, one_shaft

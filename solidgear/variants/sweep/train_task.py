@@ -12,8 +12,8 @@ import numpy as np
 from solidgear.core import (
     SolidgearError,
     Source,
+    read_tolerance,
 )
-from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.models.limits import number
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
 from solidgear.teeth.study import touching
