@@ -10,6 +10,7 @@ import pytest
 import solidgear as sg
 from solidgear.core.loading import as_written
 from solidgear.strength.deflection.at_rest import deflect, deflection
+from solidgear.strength.deflection.sheet import bearings, displacements
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
 
@@ -105,3 +106,16 @@ def test_a_shaft_with_cuts_deflects_as_its_plain_part_and_says_so():
         assert ours.value == pytest.approx(theirs.value, rel=1e-12, abs=1e-18)
     with pytest.raises(sg.SolidgearError, match="of revolution"):
         sg.deflect(keyed, "timoshenko", load="z=2 kN")
+
+
+def test_what_is_rounding_beside_a_twist_is_shown_as_zero():
+    """A torque from B to the middle: nothing bends, and the twist is that of the textbook with a
+    torque spread over either seat.
+    """
+    found = sg.deflect("geometry/shaft_stepped.toml", "timoshenko", drive={"B": "100 N*m"}).judge
+    carried, *_ = bearings(found)
+    assert carried.values == [[f"shaft.{name}", 0.0, None, 0.0, 0.0] for name in "AB"]
+    *_, at_b = displacements(found).values
+    shear, thick, thin = 207e9 / 2.6, np.pi * 0.08**4 / 32, np.pi * 0.06**4 / 32
+    twist = 100 / shear * (0.16 / 3 / thick + (0.0975 + 0.025 / 3) / thin)
+    assert at_b == ["shaft.B", 0.0, 0.0, 0.0, 0.0, pytest.approx(twist, rel=1e-3), 0.0]
