@@ -118,4 +118,5 @@ def test_what_is_rounding_beside_a_twist_is_shown_as_zero():
     *_, at_b = displacements(found).values
     shear, thick, thin = 207e9 / 2.6, np.pi * 0.08**4 / 32, np.pi * 0.06**4 / 32
     twist = 100 / shear * (0.16 / 3 / thick + (0.0975 + 0.025 / 3) / thin)
-    assert at_b == ["shaft.B", 0.0, 0.0, 0.0, 0.0, pytest.approx(twist, rel=1e-3), 0.0]
+    # a beam spreads a torque over the elements of a seat
+    assert at_b == ["shaft.B", 0.0, 0.0, 0.0, 0.0, pytest.approx(twist, rel=3e-3), 0.0]

@@ -396,8 +396,8 @@ def _beside(kind: str) -> list[Column]:
 
 
 def _bars(deflected: Deflection, place: str, units: Units) -> list[Cell]:
-    """Return the error bars of a place, none less than a share of the largest translation or rotation;
-    empty where it has none.
+    """Return the error bars of a place, none less than a share of the largest translation or rotation,
+    and none that is rounding; empty where it has none.
     """
     if not deflected.barred or place not in deflected.displacement:
         return []
@@ -405,8 +405,10 @@ def _bars(deflected: Deflection, place: str, units: Units) -> list[Cell]:
     largest = np.abs([m.value for m in six]).reshape(2, 3).max(axis=1)
     least = np.repeat(LEAST / 100 * largest, 3)
     return [
-        Cell(None) if m.bar is None else in_units(float(max(m.bar, size)), m.unit, units, 2)
-        for m, size in zip(six, least)
+        in_units(float(max(m.bar, size)), m.unit, units, 2)
+        if m.bar is not None and _without_rounding(m.bar, moved)
+        else Cell(None)
+        for m, size, moved in zip(six, least, _largest(deflected)[0])
     ]
 
 
