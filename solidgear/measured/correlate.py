@@ -349,8 +349,14 @@ def _sentences(correlation: Correlation) -> Iterator[str]:
             )
     yield from correlation.measured.remarks
     yield from correlation.of_points
-    if correlation.missed:
-        missed = ", ".join(
-            f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in correlation.missed
-        )
-        yield f"Computed and not measured: {missed}."
+    missed, perhaps = [], []
+    for mode, share in correlation.missed:
+        place = f"{mode.name} at {mode.frequency_hz:.6g} Hz"
+        if share >= SURE:
+            missed.append(place)
+        else:  # it may be the partner of a pair that is not sure
+            perhaps.append(f"{place} ({100 * share:.0f} %)")
+    if missed:
+        yield f"Computed and not measured: {', '.join(missed)}."
+    if perhaps:
+        yield f"Perhaps not measured: {', '.join(perhaps)}."
