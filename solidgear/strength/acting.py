@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypedDict
 
 import typer
 
@@ -43,6 +43,20 @@ if TYPE_CHECKING:
 else:
     Torque = Forces = str | None
     Torques = list[str] | None
+
+
+class Under(TypedDict, total=False):
+    """Words of every study at rest: what acts on a train or on a shaft."""
+
+    torque: Given
+    of: str | None
+    point: str | int | None
+    weight: str | None
+    load: str | Mapping[str, Any] | None
+    case: str | int | None
+    drive: Mapping[str, str | float] | list[str] | None
+
+
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
 ]
