@@ -120,3 +120,18 @@ def test_what_is_rounding_beside_a_twist_is_shown_as_zero():
     twist = 100 / shear * (0.16 / 3 / thick + (0.0975 + 0.025 / 3) / thin)
     # a beam spreads a torque over the elements of a seat
     assert at_b == ["shaft.B", 0.0, 0.0, 0.0, 0.0, pytest.approx(twist, rel=3e-3), 0.0]
+
+
+def test_a_slender_shaft_that_bends_far_is_held():
+    """F L^3 / (48 E I) and F L^2 / (16 E I) of Euler's beam on pinned seats of 2 mm."""
+    ends = [sg.Bearing(name=n, position=y, seat_width=2e-3, hold="pinned") for n, y in ENDS]
+    rod = sg.Segment.cylinder("rod", length=1.01, diameter=0.02)
+    middle = sg.Port(name="middle", position=0.505, span=(0.504, 0.506))
+    scene = sg.Scene.from_parts([rod], "steel", bearings=ends, port=middle, load={"z": 1e3})
+    found = sg.deflect(scene, "euler").judge
+    bending = 210e9 * np.pi * 0.02**4 / 64
+    assert found.displacement["middle"][2].value == pytest.approx(1e3 / 48 / bending, rel=1e-4)
+    assert found.displacement["A"][3].value == pytest.approx(1e3 / 16 / bending, rel=1e-4)
+
+
+ENDS = (("A", 0.005), ("B", 1.005))
