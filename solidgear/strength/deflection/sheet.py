@@ -20,6 +20,7 @@ from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import DASH
 from solidgear.strength.deflection.at_rest import (
     MOVED,
+    ROUNDING,
     WITHOUT_BAR,
     Deflection,
     Deflections,
@@ -35,8 +36,6 @@ from solidgear.trains.page.chart import COLOURS
 BAR, ENDS = "error bar", ("least", "largest")
 #: per cent; no smaller error bar is shown
 LEAST = 0.01
-#: of the largest motion or load of all places; less is rounding
-ROUNDING = 1e-8
 #: what the charts say
 LINES_SHOWN = (
     "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
@@ -169,7 +168,7 @@ def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
         [
             load.mesh,
             load.line_load,
-            _without_rounding(load.skew, _largest(deflected)[0][0]),
+            _without_rounding(load.skew, deflected.largest[0][0]),
             load.shape,
             load.stiffness,
             load.factor,
@@ -334,7 +333,7 @@ def housing(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
         return []
     loads = {name: [m.value for m in six] for name, six in deflected.mounts.items()}
     carried = [
-        [name, *map(_without_rounding, six, _largest(deflected)[1])] for name, six in loads.items()
+        [name, *map(_without_rounding, six, deflected.largest[1])] for name, six in loads.items()
     ]
     note = "Load of the housing on each mount, in the axes of the first shaft's scene."
     motion = np.array([m.value for m in deflected.displacement["housing"]])
@@ -408,35 +407,13 @@ def _bars(deflected: Deflection, place: str, units: Units) -> list[Cell]:
         in_units(float(max(m.bar, size)), m.unit, units, 2)
         if m.bar is not None and _without_rounding(m.bar, moved)
         else Cell(None)
-        for m, size, moved in zip(six, least, _largest(deflected)[0])
+        for m, size, moved in zip(six, least, deflected.largest[0])
     ]
 
 
 def _six(si_units: Sequence[str], units: Units) -> list[Column]:
     """Return columns of six components."""
     return [quantity(dof, si, units, digits=4) for dof, si in zip(DOF_NAMES, si_units)]
-
-
-def _largest(solution: Deflection) -> tuple[np.ndarray, np.ndarray]:
-    """Return the sizes (6,) beside which a motion, m and rad, and a load, N and N m, may be rounding:
-    those of all places, where a rotation moves as far as the length of its shaft, and so a moment.
-    """
-    length = max(shaft.stations[-1] for shaft in solution.shafts)
-    moved = [six for shaft in solution.shafts for six in (*shaft.line, *shaft.ports.values())]
-    loads = [b.load for shaft in solution.shafts for b in shaft.bearings]
-    loads += [np.array([force, 0, 0, 0, 0, 0]) for force in solution.mesh_forces.values()]
-    if solution.load is not None:
-        loads += [np.asarray(load.six) for load in solution.load.acting]
-    return _sizes(moved, length), _sizes(loads, 1 / length)
-
-
-def _sizes(sixes: Sequence[np.ndarray], lever: float) -> np.ndarray:
-    """Return the largest of the first three components and of `lever` times the others, and that over
-    `lever` for the others.
-    """
-    largest = np.abs(np.reshape(sixes, (-1, 2, 3))).max(axis=(0, 2), initial=0.0)
-    size = max(largest[0], lever * largest[1])
-    return np.repeat([size, size / lever], 3)
 
 
 def _without_rounding(value: float, size: float) -> float:
@@ -446,13 +423,13 @@ def _without_rounding(value: float, size: float) -> float:
 
 def _moved(six: Sequence[float] | np.ndarray, solution: Deflection) -> list[float]:
     """Return a motion without components that are rounding."""
-    return [*map(_without_rounding, map(float, six), _largest(solution)[0])]
+    return [*map(_without_rounding, map(float, six), solution.largest[0])]
 
 
 def _misaligned(solution: Deflection, k: int) -> float:
     """Return a misalignment, zero where it is rounding."""
     measure = solution.misalignment[k]
-    size = _largest(solution)[0][3 if measure.si_unit == "rad" else 0]
+    size = solution.largest[0][3 if measure.si_unit == "rad" else 0]
     return _without_rounding(measure.value, size)
 
 
@@ -460,7 +437,7 @@ def _carried(solution: Deflection) -> list[list[Any]]:
     """Return rows of every bearing: name, radial load with its direction in degrees, axial load and
     moment, without rounding.
     """
-    force, moment = _largest(solution)[1][[0, 3]]
+    force, moment = solution.largest[1][[0, 3]]
     rows = []
     for shaft in solution.shafts:
         for b in shaft.bearings:
