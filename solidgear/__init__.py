@@ -41,6 +41,7 @@ from __future__ import annotations
 import importlib
 from functools import cache
 from pathlib import Path
+from types import FunctionType
 
 import solidgear.rooms  # noqa: F401  # what features add to the core
 from solidgear.core.machine.version import VERSION
@@ -77,6 +78,10 @@ def __getattr__(name: str):
     if name not in where:
         raise _NoSuch(name)
     value = getattr(importlib.import_module(where[name]), name)
+    if isinstance(value, FunctionType):
+        from solidgear.core.arguments import checked  # start-up: commands do without
+
+        value = checked(value, name)
     globals()[name] = value
     return value
 

@@ -114,6 +114,7 @@ ADDITIONS = {
         "contact": "teeth.printed:CONTACT",
         "sheet": "datasheet.printed:SHEET",
         "export": "exchange.printed:EXPORT",
+        "import": "exchange.printed:IMPORT",
     },
     # matrices of other programs
     "matrices": {

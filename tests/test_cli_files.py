@@ -2,6 +2,7 @@
 
 import io
 import json
+import os
 import sys
 import tomllib
 from pathlib import Path
@@ -132,3 +133,18 @@ def test_one_version_everywhere():
     assert sg.__version__ == version
     assert f"version: {version}\n" in (ROOT / "CITATION.cff").read_text()
     assert f"\n## {version}" in (ROOT / "CHANGELOG.md").read_text()
+
+
+@pytest.mark.skipif(not hasattr(os, "mkfifo"), reason="no pipes among files")
+def test_what_is_no_file_is_not_replaced_by_one(tmp_path):
+    pipe, folder, link = (tmp_path / name for name in ("pipe.json", "folder.json", "link.json"))
+    os.mkfifo(pipe)
+    folder.mkdir()
+    link.symlink_to("real.json")
+    assert "it is a pipe" in str(command("schema", "scene", "--out", pipe).exception)
+    for out in (folder, ".", ""):
+        assert "Is a directory" in str(command("schema", "scene", "--out", out).exception)
+    assert pipe.is_fifo() and folder.is_dir()
+    command("schema", "scene", "--out", link)
+    assert link.is_symlink() and (tmp_path / "real.json").read_text("utf-8").startswith("{")
+    assert not [path for path in tmp_path.iterdir() if path.name.endswith(".part")]

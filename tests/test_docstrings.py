@@ -85,5 +85,5 @@ def test_examples_run(path, monkeypatch):
 def test_a_noun_that_is_exported_has_an_example(name):
     noun = getattr(sg, name)
     assert "\nExamples\n---" in inspect.getdoc(noun)
-    module = importlib.import_module(noun.__module__)
+    module = importlib.import_module(inspect.unwrap(noun).__module__)
     assert f"{module.__name__}.{noun.__qualname__}" in {case.name for case in examples_of(module)}

@@ -1,5 +1,6 @@
 """Cases of the loads of a shaft: stress in each, and the commands that take one of them."""
 
+from html import unescape
 from pathlib import Path
 
 import pytest
@@ -107,6 +108,10 @@ def test_commands_say_which_case_counts(words, file, monkeypatch, no_charts):
     chosen = command(*words, "--case", "light", *out)
     assert chosen.exit_code == plain.exit_code and chosen.stdout != plain.stdout
     assert "--case NAME" not in chosen.stderr
+    if words[0] == "compare":  # a report is read without the command that made it
+        page = (file.parent / "out" / "report.html").read_text("utf-8")
+        assert 'load case "light", one of 2' in unescape(page)
+        assert 'load case "light", one of 2' in " ".join(chosen.stdout.split())
 
 
 def test_a_case_is_no_choice_where_nothing_settles_under_it(file):

@@ -548,3 +548,15 @@ def test_the_default_solid_lies_above_the_harmonic_one_by_what_its_cells_around_
     assert np.all(coarse > 0) and np.all(fine > 0)
     # measured 1.6 and 0.4 %; as quadratic cells a quarter to a sixteenth
     assert 0.01 < coarse.max() < 0.02 and fine.max() < coarse.max() / 3
+
+
+def test_a_mode_of_a_pair_that_is_not_sure_is_perhaps_not_measured():
+    tap = {"mode": [{"frequency": 808.0, "uncertainty": "3 Hz"}]}
+    found = sg.correlate("geometry/shaft_stepped.toml", tap, 0.01)
+    names = {mode.name for mode, share in found.missed if share < 0.95}
+    assert names
+    (perhaps,) = [text for text in found.sentences if text.startswith("Perhaps not measured: ")]
+    assert all(f"{name} at " in perhaps for name in names) and "%)" in perhaps
+    assert not any(
+        name in text for name in names for text in found.sentences if "Computed and not" in text
+    )

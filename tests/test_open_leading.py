@@ -1,8 +1,13 @@
 """The bearing whose inside leaves most open: in one line, and what to ask its maker."""
 
+import re
+
 import pytest
 
 import solidgear as sg
+from solidgear.bearings.catalogue import Catalogue
+from solidgear.bearings.geometry import inner_geometry
+from solidgear.bearings.rating import ratings, ratings_of_one
 from solidgear.show.open_words import remark
 from solidgear.strength.deflection.at_rest import deflect
 from solidgear.trains.assembly.assembly import Assembly
@@ -94,6 +99,20 @@ def test_questions_to_a_maker_and_what_each_narrows(scene, ranges):
 def test_a_shaft_whose_bearings_are_known_asks_nothing(scene):
     with pytest.raises(sg.SolidgearError, match="no input is open"):
         budget(scene(KNOWN, KNOWN))
+
+
+def test_the_maker_of_a_pair_is_asked_for_numbers_of_one_bearing():
+    result = budget(sg.load("geometry/gearbox_wheel.toml"))
+    assert {question.bearing for question in result.questions} == {"C", "D"}
+    for question in result.questions:
+        middle, *ends = map(float, re.findall(r"[0-9.]+", question.middle))
+        if ends and question.key != "conformity":
+            assert ends[0] <= middle <= ends[1]
+    pair = Catalogue(designation="7208 B", arrangement="back_to_back")
+    single = Catalogue(designation="7208 B", holds="+y")
+    inside = inner_geometry(pair).middle
+    assert ratings_of_one(pair, inside) == ratings(single, inside)
+    assert ratings(pair, inside).static == 2 * ratings(single, inside).static
 
 
 def test_a_deflection_names_the_bearing_that_leads(scene):

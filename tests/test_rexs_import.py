@@ -1,5 +1,6 @@
 """Gearboxes in REXS as trains: small ones of our own, whose numbers are known."""
 
+import json
 import tomllib
 from dataclasses import replace
 
@@ -18,6 +19,7 @@ from solidgear.exchange.rexs.pins import clamped_compliance
 from solidgear.exchange.rexs.reading import document_of
 from solidgear.trains.file.reading import load_train as train_as_written
 from solidgear.trains.load.contact import contact
+from tests.command import against_schema, command
 from validation import rexs_files
 
 
@@ -473,6 +475,14 @@ def test_the_command_writes_all_or_nothing(tmp_path):
     assert max(map(len, indented)) <= 80
     with pytest.raises(SolidgearError, match="there is such a file already"):
         CliRunner().invoke(app, ["import", str(source), "--out", str(out)], catch_exceptions=False)
+    printed = command("import", source, "--out", out, "--force", "--json").stdout
+    data = json.loads(printed)
+    assert against_schema("import", printed) == [] and data["train"] and data["problem"] is None
+    assert data["files"] == [
+        str(out / name) for name in ("gear_box.toml", "input.toml", "output.toml")
+    ]
+    assert all(line in " ".join(run.output.split()) for line in data["facts"])
+    assert {*data["notes"]} == {row for row in run.output.splitlines() if row in data["notes"]}
     source.write_text(helical().xml()[:3000])
     with pytest.raises(SolidgearError, match="no whole XML"):
         CliRunner().invoke(

@@ -10,6 +10,7 @@ import pytest
 import solidgear as sg
 from solidgear.core.loading import as_written
 from solidgear.strength.deflection.at_rest import deflect, deflection
+from solidgear.strength.deflection.sheet import bearings, displacements
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
 
@@ -105,3 +106,35 @@ def test_a_shaft_with_cuts_deflects_as_its_plain_part_and_says_so():
         assert ours.value == pytest.approx(theirs.value, rel=1e-12, abs=1e-18)
     with pytest.raises(sg.SolidgearError, match="of revolution"):
         sg.deflect(keyed, "timoshenko", load="z=2 kN")
+
+
+def test_what_is_rounding_beside_a_twist_is_shown_as_zero():
+    """A torque from B to the middle: nothing bends, and the twist is that of the textbook with a
+    torque spread over either seat.
+    """
+    found = sg.deflect("geometry/shaft_stepped.toml", "timoshenko", drive={"B": "100 N*m"}).judge
+    carried, *_ = bearings(found)
+    assert carried.values == [[f"shaft.{name}", 0.0, None, 0.0, 0.0] for name in "AB"]
+    *_, at_b = displacements(found).values
+    shear, thick, thin = 207e9 / 2.6, np.pi * 0.08**4 / 32, np.pi * 0.06**4 / 32
+    twist = 100 / shear * (0.16 / 3 / thick + (0.0975 + 0.025 / 3) / thin)
+    # a beam spreads a torque over the elements of a seat
+    assert at_b == ["shaft.B", 0.0, 0.0, 0.0, 0.0, pytest.approx(twist, rel=3e-3), 0.0]
+
+
+def test_a_slender_shaft_that_bends_far_is_held():
+    """F L^3 / (48 E I) and F L^2 / (16 E I) of Euler's beam on pinned seats of 2 mm."""
+    ends = [sg.Bearing(name=n, position=y, seat_width=2e-3, hold="pinned") for n, y in ENDS]
+    rod = sg.Segment.cylinder("rod", length=1.01, diameter=0.02)
+    middle = sg.Port(name="middle", position=0.505, span=(0.504, 0.506))
+    scene = sg.Scene.from_parts([rod], "steel", bearings=ends, port=middle, load={"z": 1e3})
+    both = sg.deflect(scene, ["euler", "timoshenko"])
+    # by symmetry the middle does not tilt: what rounding leaves of that judges no model
+    assert both.verdict().startswith("Cheapest model within 5 % of the motion of middle: euler")
+    found = both.solutions[0]
+    bending = 210e9 * np.pi * 0.02**4 / 64
+    assert found.displacement["middle"][2].value == pytest.approx(1e3 / 48 / bending, rel=1e-4)
+    assert found.displacement["A"][3].value == pytest.approx(1e3 / 16 / bending, rel=1e-4)
+
+
+ENDS = (("A", 0.005), ("B", 1.005))

@@ -453,7 +453,7 @@ def written(folder, operation, **members):
         ),
         (
             '[[operation]]\ntorque = "1 N*m"\nhours = 5\n[[operation]]\ntorque = "2 N*m"',
-            "a duty table gives hours for every point",
+            "other operating points have hours, so that each needs it",
         ),
         (
             '[operation]\ntorque = "1 N*m"\nforce = [{at = "gear.p1", x = "5 N"}]',

@@ -1,13 +1,17 @@
 """What Python is answered: arguments by their names, texts as names, sentences for wrong types."""
 
+import inspect
 import json
+import pickle
 import re
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
 import solidgear as sg
+from solidgear.core.arguments import arguments_of, fits
 from solidgear.core.errors import SolidgearError
 
 STEPPED = "geometry/shaft_stepped.toml"
@@ -26,6 +30,10 @@ CATALOGUE = sg.Scene.from_parts(
     port=sg.Port(name="gear", on="body"),
     load={"x": "2 kN"},
 )
+BEAM = sg.build(CATALOGUE, "timoshenko")
+TRAIN = "geometry/axle_straddle.toml"
+#: arguments that a function looks at itself, or of types of other libraries
+FOREIGN = {"scene", "source", "mesh"}
 
 
 @pytest.mark.parametrize(
@@ -34,21 +42,90 @@ CATALOGUE = sg.Scene.from_parts(
         (lambda: sg.Segment("a"), TypeError, "^Segment takes its values by name"),
         (lambda: sg.Port("a"), TypeError, "^Port takes its values by name"),
         (lambda: sg.Segment(name="a", length=1), sg.SceneError, "Segment.cylinder"),
-        (lambda: sg.answer(None), SolidgearError, "^None: give the path"),
+        (lambda: sg.answer(None), SolidgearError, "^answer: `scene` = None: give the path"),
         (lambda: sg.Scene.from_dict([]), SolidgearError, r"^\[\]: give the tables of a scene"),
         (lambda: sg.Train.from_dict("x"), SolidgearError, "^'x': give the tables of a train"),
-        (lambda: sg.modes(CATALOGUE), SolidgearError, "a Scene is no body.*sg.build"),
-        (lambda: sg.condense(CATALOGUE, (), "gear"), SolidgearError, "a Scene is no body"),
+        (
+            lambda: sg.modes(CATALOGUE),
+            SolidgearError,
+            "`body` = a Scene: give a Body, which solidgear.build",
+        ),
+        (lambda: sg.condense(CATALOGUE, (), "gear"), SolidgearError, "`body` = a Scene"),
         (lambda: sg.build(STEPPED, "euler"), SolidgearError, "first, by sg.load"),
         (lambda: sg.deflect(CATALOGUE, load={"q": 1}), SolidgearError, "unknown key"),
-        (lambda: sg.bearing(CATALOGUE, load=3), SolidgearError, "write components such as"),
+        (
+            lambda: sg.bearing(CATALOGUE, load=3),
+            SolidgearError,
+            "`load` = 3: give a text or a dict",
+        ),
         (lambda: sg.port_matrices(STEPPED, speed="3 kg"), SolidgearError, "no.* unit of speed"),
+        (
+            lambda: sg.deflect(STEPPED, models=3),
+            SolidgearError,
+            "`models` = 3: give a text or a list",
+        ),
+        (lambda: sg.modes(BEAM, 3), SolidgearError, "`supports` = 3: give .*Scene"),
+        (lambda: sg.answer(STEPPED, ask=[1]), SolidgearError, "`ask` = \\[1\\]"),
+        (lambda: sg.optimise(STEPPED, 3, "max f1"), SolidgearError, "`vary` = 3: give a text"),
+        (lambda: sg.line_of_action(0.1, 0.2, "20", "left", "left"), SolidgearError, "a number"),
+        (lambda: sg.modes(BEAM, progress=3), TypeError, r"^modes\(\) got an unexpected"),
+        (lambda: sg.system_modes(TRAIN, kep=3), TypeError, '"kept"'),
+        (lambda: sg.system_modes(TRAIN, kept="3"), SolidgearError, "`kept` = .*whole number"),
+        (lambda: sg.sweep(STEPPED, "material.E=2e11,3e11", n="x"), SolidgearError, "`n` = "),
+        (lambda: sg.turn(BEAM, 3), SolidgearError, "a ModeSet, which solidgear.modes makes"),
+        (lambda: sg.receptance(TRAIN, ("a",), "b"), SolidgearError, "a pair"),
+        (lambda: sg.condense(BEAM, CATALOGUE, ("A", "B"), ["section"]), SolidgearError, "one for"),
         (lambda: sg.export(STEPPED, "x.abc"), SolidgearError, "of no format.* ross"),
     ],
 )
 def test_wrong_types_end_in_a_sentence(wrong, kind, words):
     with pytest.raises(kind, match=words):
         wrong()
+
+
+@pytest.mark.parametrize("name", [n for n in dir(sg) if inspect.isfunction(getattr(sg, n))])
+def test_every_function_says_what_its_arguments_may_be(name):
+    function = getattr(sg, name)
+    hints = arguments_of(inspect.unwrap(function))
+    words = {key for key in inspect.signature(function).parameters if key not in FOREIGN}
+    assert {key for key in words if hints.get(key, Any) is Any} <= {"options", "how", "wanted"}
+    assert pickle.loads(pickle.dumps(function)) is function
+
+
+def test_a_tolerance_is_a_number_or_a_text():
+    for study in (
+        lambda tol: sg.stress(STEPPED, "euler", load="x=1 kN", tol=tol),
+        lambda tol: sg.sweep(STEPPED, "segment.left.diameter=45 mm,50 mm", tolerance=tol),
+        lambda tol: sg.optimise(STEPPED, "segment.left.diameter=45 mm:50 mm", "max f1", tol=tol),
+        lambda tol: sg.correlate(STEPPED, {"mode": [{"frequency": 800.0}]}, tol),
+        lambda tol: sg.identify(STEPPED, {"mode": [{"frequency": 800.0}]}, "material.E", tol=tol),
+    ):
+        for wrong in ("5 kg", -0.1, float("nan")):
+            with pytest.raises(SolidgearError, match="tol = .* is not usable"):
+                study(wrong)
+    assert sg.stress(STEPPED, "euler", load="x=1 kN", tol="5%").shafts
+
+
+def test_kinds_of_rows_stand_with_commas_or_one_by_one():
+    paths = "segment.left.diameter=45 mm,50 mm"
+    rows = sg.sweep(STEPPED, paths, model="euler", ask="answer, deflect", n=1)
+    assert {*rows.columns} == {
+        *sg.sweep(STEPPED, paths, model="euler", ask=["answer", "deflect"], n=1).columns
+    }
+    with pytest.raises(SolidgearError, match='of a shaft give one .* did you mean "stress"'):
+        sg.sweep(STEPPED, paths, ask="stres")
+
+
+def test_a_resonance_below_all_modes_ends_in_a_sentence():
+    with pytest.raises(SolidgearError, match="no elastic mode up to 572 Hz"):
+        sg.identify(STEPPED, {"mode": [{"frequency": 520.0}]}, "material.E", tol=0.05)
+
+
+def test_numbers_of_other_libraries_are_numbers():
+    assert fits(np.int64(3), int) and fits(np.float32(0.1), float) and fits(np.array(2.0), float)
+    assert not fits(True, float) and not fits(np.array([2.0]), float) and not fits(3.0, int)
+    point = sg.deflect("geometry/gearbox_train.toml", "euler", point=1).judge
+    assert point.shafts
 
 
 def test_a_text_is_a_name_and_no_row_of_letters():

@@ -102,8 +102,8 @@ MUTATIONS = (
         "life: a pair rates as two single bearings",
         "solidgear/bearings/rating.py",
         "ratings",
-        "bearings ** ROW_POWER[data.balls]",
-        "bearings",
+        "2 ** ROW_POWER[data.balls]",
+        "2",
         "tests/test_manual.py::test_case[printed_pair_rating-A]",
     ),
     Mutation(

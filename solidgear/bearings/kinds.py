@@ -4,10 +4,10 @@ A further kind of balls, rollers or barrels is its name in ``Kind`` of
 :mod:`solidgear.bearings.catalogue` and an entry of ``SHARES``.  How makers write it is a line in
 ``_families`` of :mod:`solidgear.bearings.designation`, with a table of sizes in
 :mod:`solidgear.bearings.plan` where none fits; keys that it refuses stand in ``_by_nature`` of the
-catalogue, classes of clearance in ``TABLES`` of :mod:`solidgear.bearings.clearance`.  Other elements need a row with ``load``, ``tangent`` and
-``contacts`` of a motion (:mod:`solidgear.bearings.row` says what holds of all) and its line in
-``_row`` of :mod:`solidgear.bearings.catalogued`.  A pair of bearings is the ``arrangement`` of the
-scene.
+catalogue, classes of clearance in ``TABLES`` of :mod:`solidgear.bearings.clearance`.  Other
+elements need a row with ``load``, ``tangent`` and ``contacts`` of a motion
+(:mod:`solidgear.bearings.row` says what holds of all) and its line in ``_row`` of
+:mod:`solidgear.bearings.catalogued`.  A pair of bearings is the ``arrangement`` of the scene.
 """
 
 from __future__ import annotations

@@ -18,10 +18,10 @@ from solidgear.core import SolidgearError
 
 #: iterations; a dozen is common, contacts that come and go take some more
 MOST = 200
-#: m; a first step, and the way after which nothing is taken to hold
+#: m; a first step, and the way after which what meets no stiffness is taken not to be held
 FIRST_STEP, LOST = 2e-4, 0.05
-#: of the largest stiffness: softer directions have none
-SOFT = 1e-11
+#: of the largest stiffness, which may be that of a held seat: softer directions have none
+SOFT = 1e-13
 #: largest imbalance, relative to the load
 UNBALANCED = 1e-12
 
@@ -60,7 +60,7 @@ def settle(
     the motion of each unknown that counts as one metre: 1 for translations, one over a length for
     rotations. Forces `at_work`, N, balance each other at `start`, such as those of a preload: an
     imbalance is judged on them where they are larger than the load, since rounding is theirs. A
-    load that is not balanced after a motion of `LOST` metres is refused.
+    load that is not balanced after a motion of `LOST` metres, and meets no stiffness there, is refused.
 
     Examples
     --------
@@ -93,17 +93,34 @@ def settle(
             break
         state = state + way * step
         reach = 4 * reach if still_falling else reach
-        if np.abs(state / size).max() > LOST:
+        # a slender shaft may bend as far, and is held
+        far = np.abs(state / size).max() > LOST
+        if far and _is_loose(size[:, None] * tangent(state) * size, missing, scale):
             raise NothingHolds("nothing holds this load", step / size)
     # a tangent that is steep where contact begins turns rounding of motions into load
     return Settled(best_at, best / scale, iterations)
 
 
-def _step(stiffness: np.ndarray, missing: np.ndarray, scale: float, reach: float) -> np.ndarray:
+def _principal(
+    stiffness: np.ndarray, missing: np.ndarray, scale: float
+) -> tuple[np.ndarray, np.ndarray, np.ndarray, float]:
+    """Return principal stiffnesses with their directions, the load that is missing along each, and
+    the least stiffness that counts as one.
+    """
     value, vector = np.linalg.eigh((stiffness + stiffness.T) / 2)
     part = vector.T @ missing
     part[np.abs(part) < 1e-3 * UNBALANCED * scale] = 0.0
-    floor = max(SOFT * float(value.max(initial=0.0)), 1e-3 * scale)
+    return value, vector, part, max(SOFT * float(value.max(initial=0.0)), 1e-3 * scale)
+
+
+def _is_loose(stiffness: np.ndarray, missing: np.ndarray, scale: float) -> bool:
+    """Return True where a load that is missing meets no stiffness."""
+    value, _, part, floor = _principal(stiffness, missing, scale)
+    return bool(np.any(np.abs(part[value <= floor]) > UNBALANCED * scale))
+
+
+def _step(stiffness: np.ndarray, missing: np.ndarray, scale: float, reach: float) -> np.ndarray:
+    value, vector, part, floor = _principal(stiffness, missing, scale)
     step = vector @ (part / np.maximum(value, floor))
     length = float(np.abs(step).max())
     return step * min(1.0, reach / length) if length > 0 else step

@@ -149,7 +149,17 @@ def ratings(data: Catalogue, inside: Inside) -> Ratings:
     >>> round(found.dynamic / 32.1e3, 3), found.sources["C"], found.sources["Cu"]
     (1.625, 'catalogue, of two bearings by ISO 281', 'C0 / 22 (ISO 281, B.3.3)')
     """
-    bearings = 2 if data.paired else 1
+    one = ratings_of_one(data, inside)
+    if not data.paired:
+        return one
+    sources = one.sources | {"C": f"{one.sources['C']}, of two bearings by ISO 281"}
+    return Ratings(
+        2 ** ROW_POWER[data.balls] * one.dynamic, 2 * one.static, 2 * one.fatigue, sources
+    )
+
+
+def ratings_of_one(data: Catalogue, inside: Inside) -> Ratings:
+    """Return load ratings of a single bearing, also where the data are those of a pair."""
     sources = {}
     if data.load_rating is not None:
         dynamic, sources["C"] = data.load_rating, "catalogue"
@@ -165,10 +175,6 @@ def ratings(data: Catalogue, inside: Inside) -> Ratings:
         fatigue, sources["Cu"] = data.fatigue_limit, "catalogue"
     else:
         fatigue, sources["Cu"] = fatigue_limit(static, inside.pitch, data.balls)
-    if bearings > 1:
-        dynamic *= bearings ** ROW_POWER[data.balls]
-        static, fatigue = bearings * static, bearings * fatigue
-        sources |= {"C": f"{sources['C']}, of two bearings by ISO 281"}
     return Ratings(dynamic, static, fatigue, sources)
 
 

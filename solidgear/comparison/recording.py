@@ -54,6 +54,7 @@ from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.environment import environment
 from solidgear.core.quantity import FIRST_BENDING
 from solidgear.core.solve.mixtures import mixtures
+from solidgear.show.remarks import load_case
 
 
 @dataclass
@@ -97,6 +98,7 @@ def recorded(scene: Scene, findings: Findings) -> Record:
     out = Record(
         complete=findings.complete,
         scene=scene.as_dict(),
+        load_case=load_case(scene),
         port=ports[0],
         further_ports=ports[1:],
         attachments={

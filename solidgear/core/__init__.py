@@ -17,6 +17,7 @@ if TYPE_CHECKING:
     from solidgear.core.elements import ELEMENTS
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
+    from solidgear.core.judge.answer import read_tolerance
     from solidgear.core.judge.change import BarredMode
     from solidgear.core.judge.deviations import WITHIN, gap_verdict
     from solidgear.core.judge.open_numbers import OpenNumbers
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from solidgear.core.ladder.meshes import HARMONIC
     from solidgear.core.ladder.model import BEAM
     from solidgear.core.ladder.registry import LADDER
-    from solidgear.core.loading import as_written, explained, load
+    from solidgear.core.loading import explained, load
     from solidgear.core.machine.threads import pinned
     from solidgear.core.machine.whole_file import whole
     from solidgear.core.quantity import (
@@ -106,7 +107,6 @@ __all__ = [
     "WITHIN",
     "WhereRecord",
     "as_supports",
-    "as_written",
     "bars_of_modes",
     "build",
     "change",
@@ -123,6 +123,7 @@ __all__ = [
     "near",
     "nearest",
     "pinned",
+    "read_tolerance",
     "rotation",
     "rubin",
     "settle",
@@ -139,7 +140,6 @@ _WHERE = {
     "Body": "solidgear.core.body",
     "Supports": "solidgear.core.body",
     "as_supports": "solidgear.core.body",
-    "as_written": "solidgear.core.loading",
     "ModeName": "solidgear.core.body.mode_names",
     "Surface": "solidgear.core.body.surface",
     "Sheeted": "solidgear.core.display",
@@ -154,6 +154,7 @@ _WHERE = {
     "rotation": "solidgear.core.frames",
     "WITHIN": "solidgear.core.judge.deviations",
     "gap_verdict": "solidgear.core.judge.deviations",
+    "read_tolerance": "solidgear.core.judge.answer",
     "BarredMode": "solidgear.core.judge.change",
     "OpenNumbers": "solidgear.core.judge.open_numbers",
     "change": "solidgear.core.judge.quantities",

@@ -76,7 +76,7 @@ def as_written(source: Source) -> Scene:
     return scene_of(document.tables, document.path, alone=False).read_from(document)
 
 
-def under_case(source: Source, case: str | None) -> Document:
+def under_case(source: Source, case: str | int | None) -> Document:
     """Return the document of a scene with the case of a name or number first, under which catalogue
     bearings settle; unchanged without a name. Refused for a train.
     """

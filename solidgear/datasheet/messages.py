@@ -232,8 +232,8 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Beide Trums von {names} ziehen in einer Richtung.",
     ),
     "assumed ranges": (
-        "Ranges stated in the file: {names}.",
-        "In der Datei angegebene Spannen: {names}.",
+        "Open within a range: {names}.",
+        "Offen in einer Spanne: {names}.",
     ),
     "assumed without ranges": (
         "Ranges by open data not worked out; solidgear budget has them.",

@@ -50,7 +50,7 @@ class Numbers:
             yield Remark("caution lost", {"name": name})
 
 
-def answered_numbers(scene: Scene, tol: float | None, progress: Progress) -> Numbers:
+def answered_numbers(scene: Scene, tol: float | str | None, progress: Progress) -> Numbers:
     """Return the numbers of a shaft from the cheapest model that can show them."""
     progress("numbers")
     wanted = asked_for(scene, ())

@@ -50,7 +50,7 @@ def shaft_sheet(
     assembly: Assembly,
     point: OperatingPoint,
     settings: StressSettings | None = None,
-    tol: float | None = None,
+    tol: float | str | None = None,
     speed: float | None = None,
     progress: Progress = lambda text: None,
     numbers: Numbers | None = None,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import replace
-from typing import Any
+from typing import Any, Unpack
 
 from solidgear.core import SolidgearError, Source, explained, is_train
 from solidgear.datasheet.language import Language
@@ -13,7 +13,7 @@ from solidgear.datasheet.shaft import shaft_sheet
 from solidgear.datasheet.train import train_sheet
 from solidgear.show.options import speed_of
 from solidgear.show.units import ENGINEERING
-from solidgear.strength.acting import Acting, Given
+from solidgear.strength.acting import Acting, Under
 from solidgear.strength.stress.at_rest import StressSettings
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.trains.assembly.assembly import Assembly
@@ -23,19 +23,13 @@ from solidgear.trains.loading import load_train
 
 def sheet(
     source: Source | Train,
-    tol: float | None = None,
+    tol: float | str | None = None,
     *,
     language: str = "en",
     speed: str | None = None,
-    torque: Given = None,
-    of: str | None = None,
-    point: str | None = None,
-    weight: str | None = None,
-    load: str | Mapping[str, Any] | None = None,
-    case: str | None = None,
-    drive: Mapping[str, str | float] | list[str] | None = None,
     conditions: Mapping[str, Any] | Conditions | None = None,
     progress: Callable[[str], None] = lambda text: None,
+    **under: Unpack[Under],
 ) -> Datasheet:
     """One page of a shaft or a train: drawing with forces, numbers with both error bars, verdict,
     worst place, bearings and lives, deflection, natural frequencies and speeds to avoid.
@@ -50,12 +44,12 @@ def sheet(
         Of all words.
     speed : str, optional
         Speed of a shaft alone, such as ``"1500 rpm"``; by default that of its file.
-    torque, of, point, weight, load, case, drive
-        As of :func:`solidgear.deflect`.
     conditions : mapping or Conditions, optional
         Of the rating by DIN 743, as of :func:`solidgear.stress`.
     progress : callable
         Called with a sentence at every step.
+    **under
+        What acts, as of :func:`solidgear.deflect`.
 
     Returns
     -------
@@ -81,7 +75,7 @@ def sheet(
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
     settings = StressSettings(conditions=conditions)
-    acting = Acting(torque, of, point, weight, load, case, drive)
+    acting = Acting(**under)
     with explained(source):
         if isinstance(source, Train) or is_train(source):
             facts = _of_train(source, acting, settings, tol, speed, progress)
@@ -95,7 +89,7 @@ def _of_train(
     source: Source | Train,
     acting: Acting,
     settings: StressSettings,
-    tol: float | None,
+    tol: float | str | None,
     speed: str | None,
     progress: Callable[[str], None],
 ) -> Datasheet:

@@ -1,4 +1,4 @@
-"""What export prints as JSON."""
+"""What export and import print as JSON."""
 
 from __future__ import annotations
 
@@ -28,4 +28,13 @@ EXPORT = (
     ),
     # a rotor of another program is its own account
     Printed(keys={"files": list[str]}),
+)
+IMPORT = Printed(
+    keys={
+        "files": list[str],  # the train first where there is one
+        "train": bool,
+        "facts": list[str],
+        "notes": dict[str, list[str]],  # by what they are: contradictory, assumed, left out
+        "problem": str | None,  # why the files cannot be used as they are
+    }
 )

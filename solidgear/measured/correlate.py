@@ -11,7 +11,16 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from solidgear.core import BarredMode, ModeName, Sheeted, Source, load, pinned, without_axis
+from solidgear.core import (
+    BarredMode,
+    ModeName,
+    Sheeted,
+    Source,
+    load,
+    pinned,
+    read_tolerance,
+    without_axis,
+)
 from solidgear.core.plain import plain
 from solidgear.measured.alignment import Peak
 from solidgear.measured.computed import Computed, computed_up_to
@@ -169,7 +178,7 @@ class Correlation(Sheeted):
 def correlate(
     scene: Source,
     measured: Source | Measured,
-    tol: float | None = None,
+    tol: float | str | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Correlation:
     """Pair measured resonances with the modes of a scene.
@@ -207,7 +216,7 @@ def correlate(
     ['bending 1', 'bending 2']
     """
     scene, measured = load(scene), load_measured(measured)
-    tol = scene.ask.tolerance / 10 if tol is None else tol
+    tol = scene.ask.tolerance / 10 if tol is None else read_tolerance(tol)
     highest = measured.modes[-1].frequency
     correlation = _paired(measured, computed_up_to(scene, highest, tol, progress))
     if correlation.likeness.sentence or correlation.likeness.condition:
@@ -340,8 +349,14 @@ def _sentences(correlation: Correlation) -> Iterator[str]:
             )
     yield from correlation.measured.remarks
     yield from correlation.of_points
-    if correlation.missed:
-        missed = ", ".join(
-            f"{mode.name} at {mode.frequency_hz:.6g} Hz" for mode, _ in correlation.missed
-        )
-        yield f"Computed and not measured: {missed}."
+    missed, perhaps = [], []
+    for mode, share in correlation.missed:
+        place = f"{mode.name} at {mode.frequency_hz:.6g} Hz"
+        if share >= SURE:
+            missed.append(place)
+        else:  # it may be the partner of a pair that is not sure
+            perhaps.append(f"{place} ({100 * share:.0f} %)")
+    if missed:
+        yield f"Computed and not measured: {', '.join(missed)}."
+    if perhaps:
+        yield f"Perhaps not measured: {', '.join(perhaps)}."

@@ -31,6 +31,7 @@ from solidgear.core import (
     document_of,
     flexibility,
     pinned,
+    read_tolerance,
 )
 from solidgear.core.errors import names_in
 from solidgear.core.loading import scene_of
@@ -229,7 +230,7 @@ def identify(
     measured: Source | Measured,
     vary: str | Iterable[str],
     *,
-    tol: float = 2e-4,
+    tol: float | str = 2e-4,
     predict: int = 0,
     progress: Progress = lambda _: None,
     priors: bool = False,
@@ -296,11 +297,12 @@ class _Search:
         document: Document,
         measured: Measured,
         vary: Sequence[str],
-        tol: float,
+        tol: float | str,
         progress: Progress,
         priors: bool,
     ):
-        self.path, self.measured, self.tol, self.progress = document.path, measured, tol, progress
+        self.path, self.measured, self.progress = document.path, measured, progress
+        self.tol = read_tolerance(tol)
         tables = document.tables
         ranges = scene_of(tables, document.path).uncertain if priors else None
         # results may lie outside the ranges that the file states
@@ -347,6 +349,12 @@ class _Search:
             scene = self.scene_at(self.x)
             if computed is None:
                 computed = computed_up_to(scene, highest, self.tol, self.progress)
+                if not computed.modes:
+                    raise SolidgearError(
+                        f"identify: {scene.name} has no elastic mode up to {computed.limit:.4g} Hz, "
+                        f"and the highest resonance measured is at {highest:.4g} Hz: begin with "
+                        "values that are nearer"
+                    )
                 self.measured = placed_in(self.measured, computed)
             else:
                 self.progress(f"round {turn + 1}")

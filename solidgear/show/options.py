@@ -14,7 +14,7 @@ from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass
 from enum import StrEnum
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
 
 import typer
 
@@ -41,8 +41,13 @@ SceneFile = Annotated[
         help="Scene file (TOML), such as geometry/pinion_overhung.toml; - for standard input."
     ),
 ]
+if TYPE_CHECKING:
+    #: of a command a text, of Python also a number
+    Named: TypeAlias = str | int | None
+else:
+    Named = str | None
 CaseName = Annotated[
-    str | None,
+    Named,
     typer.Option(
         "--case", help="Case of the loads of a shaft, by name or number; by default the first."
     ),

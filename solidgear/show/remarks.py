@@ -17,9 +17,10 @@ from solidgear.core import (
 )
 from solidgear.core import load as read
 from solidgear.core.loading import case_sentence, under_case
+from solidgear.show.words import capital
 
 
-def load(source: Source, case: str | None = None) -> Scene:
+def load(source: Source, case: str | int | None = None) -> Scene:
     """Read a scene, whose bearings settle under a case of its loads, by default the first of several,
     which is printed, and print doubts about the file of its part.
     """
@@ -34,7 +35,7 @@ def load(source: Source, case: str | None = None) -> Scene:
     return scene
 
 
-def document_under(source: Source, case: str | None) -> Document:
+def document_under(source: Source, case: str | int | None) -> Document:
     """Return the document of a scene with a case of its loads first, or as it is, and print the first
     of several where none is given.
     """
@@ -42,6 +43,12 @@ def document_under(source: Source, case: str | None) -> Document:
     if case is None and not document.describes_train and len(document.tables.get("case", ())) > 1:
         _print_case(document)
     return document
+
+
+def load_case(scene: Scene) -> str:
+    """Return the sentence of a report on the case of several under which bearings settled."""
+    sentence = case_sentence(scene)
+    return f"{capital(sentence)}." if sentence else ""
 
 
 def _print_case(source: Source) -> None:

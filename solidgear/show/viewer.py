@@ -14,19 +14,17 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 
+from solidgear.core import Body, ModeSet
 from solidgear.core.machine.whole_file import write_page
 from solidgear.show.drawing import SWING
 from solidgear.show.packing import packed
 from solidgear.show.page_parts import template
 from solidgear.show.scales import MOTION, rgb
 from solidgear.show.turning import Turned, picks, turned
-
-if TYPE_CHECKING:
-    from solidgear.core import Body, ModeSet
 
 #: most that the surfaces and shapes of one page may take, bytes; the page itself stays below 6 MB
 BUDGET = 3_500_000

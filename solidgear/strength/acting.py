@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Any, TypeAlias
+from typing import TYPE_CHECKING, Annotated, Any, TypeAlias, TypedDict
 
 import typer
 
@@ -14,15 +14,15 @@ from solidgear.core import (
     SceneError,
     SolidgearError,
     Source,
-    as_written,
     explained,
     is_train,
     name_of_source,
     show,
 )
+from solidgear.core.loading import as_written
 from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group
-from solidgear.show.options import CaseName, refuse
+from solidgear.show.options import CaseName, Named, refuse
 from solidgear.strength.load import AT_REST, driven
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
@@ -43,6 +43,20 @@ if TYPE_CHECKING:
 else:
     Torque = Forces = str | None
     Torques = list[str] | None
+
+
+class Under(TypedDict, total=False):
+    """Words of every study at rest: what acts on a train or on a shaft."""
+
+    torque: Given
+    of: str | None
+    point: str | int | None
+    weight: str | None
+    load: str | Mapping[str, Any] | None
+    case: str | int | None
+    drive: Mapping[str, str | float] | list[str] | None
+
+
 AtRestFile = Annotated[
     Path, typer.Argument(help="Train or scene file (TOML), such as geometry/axle_overhung.toml.")
 ]
@@ -63,7 +77,7 @@ class Acting(Group):
         typer.Option("--of", help="Shaft of --torque: pinion or gear; the engine's shaft."),
     ] = None
     point: Annotated[
-        str | None, typer.Option("--point", help="Operating point of a train, by name or number.")
+        Named, typer.Option("--point", help="Operating point of a train, by name or number.")
     ] = None
     weight: Annotated[
         str | None,
@@ -88,7 +102,7 @@ class Acting(Group):
     ] = None
 
     def read(
-        self, source: Source | Train, tol: float | None = None
+        self, source: Source | Train, tol: float | str | None = None
     ) -> tuple[Assembly, OperatingPoint]:
         """Return a train and its operating point, or a shaft under its load, with the error that
         meshes may leave; refuse options of the other.
@@ -154,10 +168,6 @@ class Acting(Group):
 
 def torques(drive: list[str] | Mapping[str, Any]) -> dict[str, float]:
     """Return torques by the place where each enters, N m, from ``B=115 N*m`` or a mapping."""
-    if not isinstance(drive, (Mapping, list, tuple)):
-        raise SolidgearError(
-            f'`drive` {show(drive)}: give places with their torques, such as {{"B": "115 N*m"}}'
-        )
     pairs = drive.items() if isinstance(drive, Mapping) else map(_torque, drive)
     out = {}
     for name, value in pairs:

@@ -123,7 +123,7 @@ class TeethStudy(Sheeted):
 @pinned
 def contact(
     train: Source | Train,
-    point: str | OperatingPoint | None = None,
+    point: str | int | OperatingPoint | None = None,
     *,
     torque: Given = None,
     of: str | None = None,

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from solidgear.core import Scene, Source, as_written, document_of, explained, load
+from solidgear.core import Scene, Source, document_of, explained, load
+from solidgear.core.loading import as_written
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.reading import train_of
 from solidgear.trains.file.train import Train

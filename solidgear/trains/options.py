@@ -11,7 +11,7 @@ import typer
 
 from solidgear.core import LADDER, SceneError, SolidgearError, Source, document_of, listed, show
 from solidgear.show.command import Group
-from solidgear.show.options import MODEL, options_by_name, relative
+from solidgear.show.options import MODEL, Named, options_by_name, relative
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.matrices_body import MATRICES
 from solidgear.trains.assembly.shaft import checked_model
@@ -33,10 +33,15 @@ MOST_KEPT = 200
 Models: TypeAlias = str | Mapping[str, str] | None
 #: builder options by shaft, or texts such as ``pinion.order=3``
 Settings: TypeAlias = Mapping[str, Mapping[str, Any]] | Iterable[str] | None
+#: harmonics of solids that teeth drive, or a text such as ``2,3``
+Waves: TypeAlias = str | Sequence[int] | None
 if TYPE_CHECKING:
-    Harmonics: TypeAlias = str | Sequence[int] | None
+    Harmonics: TypeAlias = Waves
+    #: of a command a number, of Python also a text
+    Tolerance: TypeAlias = float | str | None
 else:
     Harmonics = str | None
+    Tolerance = float | None
 
 
 class Reducing(TypedDict, total=False):
@@ -45,9 +50,9 @@ class Reducing(TypedDict, total=False):
     max_frequency: float | None
     reduction: str
     kept: int
-    local_harmonics: Harmonics
-    point: str | None
-    tol: float | None
+    local_harmonics: Waves
+    point: str | int | None
+    tol: float | str | None
 
 
 @dataclass(frozen=True)
@@ -73,7 +78,7 @@ class Reduction(Group):
         ),
     ] = None
     point: Annotated[
-        str | None,
+        Named,
         typer.Option(
             "--point",
             help="Operating point, by its name or number in the file; the first by default.",
@@ -109,7 +114,7 @@ class Reduced(Reduction):
     """Options of every command on a train: how its shafts are reduced and meshed."""
 
     tol: Annotated[
-        float | None,
+        Tolerance,
         relative(
             "--tol",
             "Relative error that meshes of harmonic shafts may leave; by default a tenth of the "

@@ -38,6 +38,7 @@ CORE_FLOORS = (
     "core.ladder",
     "core.loading",
     "core.scene_text",
+    "core.arguments",
     "core.reduction",
     "core.system",
     "core.judge",

@@ -31,7 +31,14 @@ from solidgear.show.run_tables import pairs_of
 from solidgear.show.table import Cell, Table
 from solidgear.show.units import Units, digits_for, units_named
 from solidgear.show.viewer import TURNED, fragment_of
-from solidgear.show.words import DASH, bar_percent, percent, plus_minus, seconds, short_percent
+from solidgear.show.words import (
+    DASH,
+    bar_percent,
+    percent,
+    plus_minus,
+    seconds,
+    short_percent,
+)
 from solidgear.trains.page import input_tables
 
 log = logging.getLogger(__name__)
@@ -225,13 +232,14 @@ def numbers(record: Record, units: Units) -> Table:
     caption = f"At the lumped point {(record.scene.get('port') or {}).get('name', '')}".strip()
     if key:
         caption += f", by the {record.name(key)}"
+    case = f"{record.load_case} " if record.load_case else ""
     remark = open_words.remark(record.open)
     end = remark or "open data of bearings or load are not included."
     return Table(
         caption,
         ["quantity", "value", "error bar"],
         [row for row in cells if row],
-        "K: all other motions held; C: left free. The error bar holds the error of mesh and "
+        f"{case}K: all other motions held; C: left free. The error bar holds the error of mesh and "
         f"solver{'. ' if remark else '; '}{end}",
         style="numbers",
     )

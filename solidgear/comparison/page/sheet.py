@@ -138,7 +138,8 @@ def verdict_lines(record: Record) -> list[str]:
 
 def _closing(record: Record) -> list[str]:
     """Return lines below a verdict: cautions, ranges, modes counted, seconds and peak memory."""
-    lines = [caution(text) for text in record.warnings]
+    lines = [record.load_case] if record.load_case else []
+    lines += [caution(text) for text in record.warnings]
     ranges = ", ".join(" ".join(part) for part in open_words.parts(record.open, FIRST_BENDING))
     remark = open_words.remark(record.open)
     if ranges:

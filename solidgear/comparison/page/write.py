@@ -95,8 +95,9 @@ def write_all(
 
     The run has taken what has passed since it `began`, by ``time.perf_counter``.
     The record gains ``files``, what was written beside it, and ``left_out``, a sentence for what
-    could not be drawn or written; `sheet` writes one page to hand on into a file. After an interrupt there are numbers and a report, and no shapes:
-    who has pressed Ctrl-C does not want to wait for them.
+    could not be drawn or written; `sheet` writes one page to hand on into a file. After an
+    interrupt there are numbers and a report, and no shapes: who has pressed Ctrl-C does not want to
+    wait for them.
     """
     record.left_out = []
     shapes = solutions if record.complete else {}

@@ -28,7 +28,7 @@ def compare_two(
     mix: Pair,
     mesh: str | None,
     tol: float | None,
-    case: str | None,
+    case: str | int | None,
     run: Shown,
     options: dict[str, bool],
     of_trains: dict[str, bool],

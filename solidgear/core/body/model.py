@@ -403,12 +403,3 @@ class Body(Displayed):
             met = abs(block.stiffness @ block.rigid) / np.maximum(scale, inertia)
             worst = max(worst, float(met.max()))
         return worst
-
-
-def refuse_no_body(body: object, study: str) -> None:
-    """Refuse a scene, or anything else that no model has made a body of."""
-    if not hasattr(body, "blocks"):
-        raise SolidgearError(
-            f"{study}: a {type(body).__name__} is no body; make one of a scene by a model, such as "
-            f'sg.build(scene, "timoshenko")'
-        )

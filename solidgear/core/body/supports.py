@@ -20,8 +20,8 @@ from solidgear.core.springs import root_of
 if TYPE_CHECKING:
     from solidgear.core.scene import Bearing, PointMass, Scene
 
-    #: sources of :func:`as_supports`
-    Holding: TypeAlias = "Supports | Scene | Iterable[Bearing]"
+#: sources of :func:`as_supports`
+Holding: TypeAlias = "Supports | Scene | Iterable[Bearing]"
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,8 +12,9 @@ inv being tan minus angle: the profile shift x counts in *normal* modules.  Its 
 rounded corner of the rack leaves: while the wheel rolls by phi, the centre c of the corner moves along
 the rack's line, and the corner touches the fillet where its normal passes through the pitch point, so
 that the point is ``c + rho m c / |c|``, turned back by phi (Litvin and Fuentes, Gear Geometry and
-Applied Theory, 2004, 5.4), and ``c - rho m c / |c|`` where a large shift lifts c beyond that line.  The corner is a circle in the transverse plane; of helical teeth it is an
-ellipse, which no stiffness has been seen to feel.
+Applied Theory, 2004, 5.4), and ``c - rho m c / |c|`` where a large shift lifts c beyond that line.
+The corner is a circle in the transverse plane; of helical teeth it is an ellipse, which no
+stiffness has been seen to feel.
 
 A ring counts its teeth below zero.  Its teeth are the spaces of a wheel, their tips lie inside.  No
 rack cuts a ring: its fillet is a circle that touches flank and root.

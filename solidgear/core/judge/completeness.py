@@ -34,8 +34,8 @@ def completeness(evidence: dict, model: str) -> str:
 
 def cut_short(modes: Iterable[Mode], n: int, asked_hz: float | None, option: str = "") -> list[str]:
     """Warn where the number `n` of elastic shapes, twins counted twice, that was asked for, or that a
-    comparison needs at least, ends a list below the frequency asked for: one sentence, or none; `option` names an option that can be raised,
-    beside the number in the scene.
+    comparison needs at least, ends a list below the frequency asked for: one sentence, or none;
+    `option` names an option that can be raised, beside the number in the scene.
     """
     elastic = [m for m in modes if not m.name.rigid]
     if not asked_hz or not elastic or sum(m.multiplicity for m in elastic) < n:

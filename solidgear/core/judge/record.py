@@ -404,6 +404,7 @@ class Record(Part):
     version: int = Field(SCHEMA, alias="schema")
     complete: bool = True
     scene: Facts = {}
+    load_case: str = ""  #: sentence on the case of several under which catalogue bearings settled
     port: PortRecord | None = None
     further_ports: list[PortRecord] = []
     models: dict[str, ModelRecord] = {}

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import os
-from collections.abc import Mapping
 from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
@@ -86,8 +84,10 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
             f"model {show(fidelity, 40)} is unknown{nearest(fidelity, LADDER.bodies)}; "
             f"use one of {', '.join(LADDER.bodies)}"
         )
-    if isinstance(scene, (str, os.PathLike, Mapping)):
-        raise SolidgearError(f"build: read {show(str(scene), 40)} first, by sg.load")
+    if not hasattr(scene, "segments"):
+        raise SolidgearError(
+            f"build: {show(str(scene), 40)} is no Scene: read it first, by sg.load"
+        )
     model = LADDER[fidelity]
     unfit = model.unfit(scene)
     if unfit:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import sys
 import time
@@ -19,7 +20,8 @@ PAUSES = (0.02, 0.1, 0.5) if sys.platform == "win32" else ()
 @contextmanager
 def whole(path: Path) -> Iterator[Path]:
     """Yield another name in the same folder to write under; it takes the place of ``path`` at the end, or
-    is gone if something was raised, for a rename within a folder is all or nothing.
+    is gone if something was raised, for a rename within a folder is all or nothing.  A link stays, and
+    what it leads to is replaced; a folder, pipe or device is refused, for a rename would replace it.
 
     Examples
     --------
@@ -32,6 +34,11 @@ def whole(path: Path) -> Iterator[Path]:
     ...     early, target.read_text()
     (False, '1,2,3')
     """
+    path = path.resolve()
+    if path.is_dir():
+        raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
+    if path.exists() and not path.is_file():
+        raise OSError(errno.EINVAL, "it is a pipe or a device, not a file", str(path))
     partial = path.with_name(f".{path.name}.{os.getpid()}.part")
     try:
         yield partial

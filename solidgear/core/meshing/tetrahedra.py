@@ -67,8 +67,9 @@ def tetrahedra(
     `graded_size` that at `circles` and at every kink of the outline (shoulders, cone ends,
     corners), of which `convex` ones may be left out, the same everywhere when None; `reach` the
     distance over which the edge grows from the one to the other, m, the local radius when None.
-    `around` is the least number of elements around a circle. Where a segment lacks volume or second moments, as edges that would fold are straight,
-    elements are made smaller at `graded_size`; `progress` is called as progress(fraction, message) between the stages.
+    `around` is the least number of elements around a circle. Where a segment lacks volume or second
+    moments, as edges that would fold are straight, elements are made smaller at `graded_size`;
+    `progress` is called as progress(fraction, message) between the stages.
     """
     segments = outline.segments
     planes, circles = [float(y) for y in planes], [float(y) for y in circles]

@@ -25,19 +25,16 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING
 
 import numpy as np
 import scipy.linalg as sla
 
 from solidgear.core.body import Body, as_supports
+from solidgear.core.body.supports import Holding
 from solidgear.core.machine.threads import pinned
 from solidgear.core.reduction.lumped_point import LumpedPoint, lumped_point
 from solidgear.core.solve.modes import ModeSet
 from solidgear.core.solve.statics import condense
-
-if TYPE_CHECKING:
-    from solidgear.core.body.supports import Holding
 
 METHODS = ("old", "thesis", "mode-matched", "guyan")
 #: v' K_a v / w1^2 this close to 1 counts as a static shape: the double root of the quadratic then is

@@ -43,7 +43,7 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import shift
 
 #: ports to keep: names, or (name, attachment) where the body has more than one of a name
-PortChoice = Iterable["str | tuple[str, str]"]
+PortChoice = Iterable[str | tuple[str, str]]
 
 
 @dataclass(frozen=True, eq=False)

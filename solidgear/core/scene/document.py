@@ -63,6 +63,7 @@ class Origin:
 
 #: what every study begins with
 Source: TypeAlias = str | os.PathLike | Mapping[str, Any] | Document | Documented
+SOURCE_WORDS = "the path of a TOML file, its tables as a dict, or a Scene or Train"
 
 
 def document_of(source: Source) -> Document:
@@ -81,10 +82,7 @@ def document_of(source: Source) -> Document:
         # what has not changed since means what its file says: a place moves with its segment
         read = getattr(source, "as_read", None)
         return read or Document(source.to_dict(), name_of_source(source))
-    raise SolidgearError(
-        f"{show(repr(source), 40)[1:-1]}: give the path of a TOML file, its tables as a dict, or a "
-        "Scene or Train"
-    )
+    raise SolidgearError(f"{show(repr(source), 40)[1:-1]}: give {SOURCE_WORDS}")
 
 
 def read_tables(

@@ -131,13 +131,9 @@ def _unknown(torque_at: str | None, stations: Sequence[str]) -> Iterator[SceneEr
 
 
 def _case_problems(cases: Sequence[LoadCase], loads: Sequence[str]) -> Iterator[SceneError]:
-    """Yield problems of cases: names of cases and loads, and the table of their shares."""
-    names = set()
+    """Yield problems of cases: the duty table, and names of loads."""
+    yield from duty_problems(cases, "cases", "case")
     for k, case in enumerate(cases):
-        if case.name in names:
-            reason = "another case has this name; each needs its own"
-            yield SceneError(reason, path=("cases", k, "name"))
-        names.add(case.name)
         for i, name in enumerate(case.loads or ()):
             if name not in loads:
                 yield SceneError(_no_load(name, loads), path=("cases", k, "loads", i))
@@ -147,19 +143,30 @@ def _case_problems(cases: Sequence[LoadCase], loads: Sequence[str]) -> Iterator[
             elif case.loads is not None and name not in case.loads:
                 reason = "this load does not act in the case; name it in loads as well"
                 yield SceneError(reason, path=("cases", k, "factors", name))
+
+
+def duty_problems(rows: Sequence[Any], table: str, kind: str) -> Iterator[SceneError]:
+    """Yield problems of the rows of a duty table, cases or operating points: names that are there
+    twice, a share or hours that rows lack, and shares that do not sum to one.
+    """
+    names = set()
+    for k, row in enumerate(rows):
+        if row.name and row.name in names:
+            reason = f"another {kind} has this name; each needs its own"
+            yield SceneError(reason, path=(table, k, "name"))
+        names.add(row.name)
     for key in ("share", "hours"):
-        stated = [k for k, case in enumerate(cases) if getattr(case, key) is not None]
-        if stated and len(stated) < len(cases):
-            missing = next(k for k in range(len(cases)) if k not in stated)
-            reason = f"this key is missing: other cases have {key}, so that each needs it"
-            yield SceneError(reason, path=("cases", missing, key))
+        lacking = [k for k, row in enumerate(rows) if getattr(row, key) is None]
+        if lacking and len(lacking) < len(rows):
+            reason = f"this key is missing: other {kind}s have {key}, so that each needs it"
+            yield SceneError(reason, path=(table, lacking[0], key))
             return
-    shares = [case.share for case in cases if case.share is not None]
+    shares = [row.share for row in rows if row.share is not None]
     if shares and abs(fsum(shares) - 1) > TYPED:
         yield SceneError(
-            f"the shares of {len(shares)} cases sum to {fsum(shares):.6g}; they must sum to one "
+            f"the shares of {len(shares)} {kind}s sum to {fsum(shares):.6g}; they must sum to one "
             "(write hours for times that do not)",
-            path=("cases", 0, "share"),
+            path=(table, 0, "share"),
         )
 
 

@@ -10,14 +10,14 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, ClassVar
+from typing import ClassVar
 
 import numpy as np
 
 from solidgear.core.body import FURTHER, Body, as_supports
 from solidgear.core.body.cache import LastTwo
 from solidgear.core.body.mode_names import BENDING, ModeName, meant, numbered
-from solidgear.core.body.model import refuse_no_body
+from solidgear.core.body.supports import Holding
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.threads import pinned
@@ -35,9 +35,6 @@ from solidgear.core.solve.groups import (
 )
 from solidgear.core.solve.naming import Names, Projection
 from solidgear.core.solve.shifted import SHIFT, factors
-
-if TYPE_CHECKING:
-    from solidgear.core.body.supports import Holding
 
 STATIONS = 13
 #: relative error of a frequency above which it is not reported
@@ -215,7 +212,6 @@ def modes(
     >>> bool(np.isclose(found.named("bending 1").frequency_hz, formula, rtol=1e-6))
     True
     """
-    refuse_no_body(body, "modes")
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
     if body.factoring.engine == "petsc-gamg":

@@ -19,22 +19,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, overload
+from typing import overload
 
 import numpy as np
 import scipy.linalg as sla
 
 from solidgear.core.body import Block, Body, as_supports
-from solidgear.core.body.model import refuse_no_body
-from solidgear.core.body.supports import separated
+from solidgear.core.body.supports import Holding, separated
 from solidgear.core.errors import SolidgearError, show
 from solidgear.core.machine.threads import pinned
 from solidgear.core.solve.condensed import Condensed, Coupled
 from solidgear.core.solve.inertia_relief import relieved_fields
 from solidgear.core.solve.shifted import factors
-
-if TYPE_CHECKING:
-    from solidgear.core.body.supports import Holding
 
 # Relative error of a compliance where refinement gives none, and that of a stiffness above which
 # two points count as one.
@@ -137,7 +133,12 @@ def condense(
 
 
 @pinned
-def condense(body, supports, port, attachment=None):
+def condense(
+    body: Body,
+    supports: Holding,
+    port: str | tuple[str, ...] | list[str],
+    attachment: str | Sequence[str | None] | None = None,
+) -> Condensed | Coupled:
     """Stiffness and compliance of the supported shaft at one port, or between several.
 
     Parameters
@@ -172,15 +173,18 @@ def condense(body, supports, port, attachment=None):
     >>> bool(at_gear.stiffness[2, 2] < 4e8 + 5e8)  # softer than the bearings side by side
     True
     """
-    refuse_no_body(body, "condense")
     names = (port,) if isinstance(port, str) else tuple(port)
     if not names or len(set(names)) < len(names):
         raise SolidgearError(f"condense: port = {show(names)}; name each port once, at least one")
-    one_kind = attachment is None or isinstance(attachment, str)
-    kinds = (attachment,) * len(names) if one_kind else tuple(attachment)
+    if attachment is None or isinstance(attachment, str):
+        attachment = [attachment] * len(names)
+    if len(attachment) != len(names):
+        raise SolidgearError(
+            f"condense: attachment = {show([*attachment])}: give one, or one for each of {show(names)}"
+        )
     supports = as_supports(supports)
     flex = flexibility(body)
-    indices = [body.port_index(name, kind) for name, kind in zip(names, kinds)]
+    indices = [body.port_index(name, kind) for name, kind in zip(names, attachment)]
     rows = np.concatenate([6 * index + np.arange(6) for index in indices])
     bearing_rows = supports.rows(body)
     p_l = body.rigid_ports[rows]

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from solidgear.core.body import Supports, as_supports
+from solidgear.core.body.supports import Holding
 from solidgear.core.errors import SolidgearError
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.reduction.superelement import PortMotion
@@ -270,7 +271,7 @@ class HousedSprings:
         return self.supports.root.T @ np.vstack([end.rows for end in ends])
 
 
-def grounded(part: str, supports) -> dict[str, Link]:
+def grounded(part: str, supports: Holding) -> dict[str, Link]:
     """Return supports of one shaft as links to ground.
 
     Parameters

@@ -26,8 +26,8 @@ from solidgear.cuts.solid.cuts import OVERHANG
 if TYPE_CHECKING:
     from solidgear.cuts.features.cut import Cut
 
-#: edges of elements: of the largest, in outer radii, and on the bore in its own; at a hole and at the root of a keyway, in their
-#: radii; at the ends of a keyway, in half its width
+#: edges of elements: of the largest, in outer radii, and on the bore in its own; at a hole and at
+#: the root of a keyway, in their radii; at the ends of a keyway, in half its width
 BULK, AT_HOLE, AT_ROOT, AT_END = 0.5, 0.5, 1.5, 0.5
 #: growth of edges per distance from a hole or an end, from a root, and from a place of largest stress
 GROWTH, FROM_ROOT, NEAR_PEAK = 0.6, 1.0, 0.5

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Mapping
 from contextlib import ExitStack
 from pathlib import Path
@@ -14,6 +15,7 @@ from solidgear.exchange.rexs.document import RexsError
 from solidgear.exchange.rexs.importing import Imported, imported, name_of
 from solidgear.exchange.rexs.reading import read
 from solidgear.show.command import NOT_REACHED, as_typed, command, filled, say
+from solidgear.show.options import Run
 
 
 @command
@@ -23,6 +25,8 @@ def import_file(
     ],
     out: Annotated[Path, typer.Option(help="Folder for the train and its shafts.")],
     force: Annotated[bool, typer.Option(help="Replace files that are there.")] = False,
+    *,
+    run: Run,
 ) -> None:
     document = read(file)
     try:
@@ -37,11 +41,26 @@ def import_file(
             )
     _write(paths)
     first = next(iter(paths))
-    _report(gearbox, first)
-    if (problem := _problem(first, gearbox)) is not None:
+    problem = _problem(first, gearbox)
+    if run.as_json:
+        print(
+            json.dumps(
+                {
+                    "files": [str(path) for path in paths],
+                    "train": gearbox.has_train,
+                    "facts": [*gearbox.facts],
+                    "notes": dict(gearbox.notes.groups),
+                    "problem": None if problem is None else str(problem),
+                }
+            )
+        )
+    else:
+        _report(gearbox, first)
+    if problem is not None:
         typer.echo(f"solidgear: {problem}", err=True)
         raise typer.Exit(NOT_REACHED)
-    say("", f"Next: solidgear {'check' if gearbox.has_train else 'answer'} {as_typed(first)}")
+    if not run.as_json:
+        say("", f"Next: solidgear {'check' if gearbox.has_train else 'answer'} {as_typed(first)}")
 
 
 def _write(texts: Mapping[Path, str]) -> None:

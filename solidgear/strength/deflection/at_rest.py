@@ -6,6 +6,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from time import perf_counter
 from typing import Any, ClassVar
 
@@ -36,6 +37,8 @@ from solidgear.trains.load.state import OperatingState
 from solidgear.trains.load.static_errors import StaticErrors
 from solidgear.trains.load.twist import still_station
 
+#: of the largest motion or load of all places; less is rounding
+ROUNDING = 1e-8
 #: models that a deflection is solved with, the cheapest first
 MODELS = (RIGID, "euler", "timoshenko", JUDGE)
 MOVED = ("m moved",) * 3 + ("rad moved",) * 3
@@ -101,6 +104,19 @@ class Deflection:
         equal = len({*self.models.values()}) == 1
         return next(iter(self.models.values())) if equal else mix_label(self.models)
 
+    @cached_property
+    def largest(self) -> tuple[np.ndarray, np.ndarray]:
+        """Sizes (6,) beside which a motion, m and rad, and a load, N and N m, may be rounding: those of
+        all places, where a rotation moves as far as the length of its shaft, and so a moment.
+        """
+        length = max(shaft.stations[-1] for shaft in self.shafts)
+        moved = [six for shaft in self.shafts for six in (*shaft.line, *shaft.ports.values())]
+        loads = [b.load for shaft in self.shafts for b in shaft.bearings]
+        loads += [np.array([force, 0, 0, 0, 0, 0]) for force in self.mesh_forces.values()]
+        if self.load is not None:
+            loads += [np.asarray(load.six) for load in self.load.acting]
+        return _sizes(moved, length), _sizes(loads, 1 / length)
+
     @property
     def compared(self) -> tuple[Measured, ...]:
         """Numbers by which models are compared: the misalignment, or the motion of the lumped point
@@ -135,6 +151,15 @@ class Deflection:
         if self.mounts:
             data["mounts"] = {place: _by_name(six) for place, six in self.mounts.items()}
         return plain(data)
+
+
+def _sizes(sixes: Sequence[np.ndarray], lever: float) -> np.ndarray:
+    """Return the largest of the first three components and of `lever` times the others, and that over
+    `lever` for the others.
+    """
+    largest = np.abs(np.reshape(sixes, (-1, 2, 3))).max(axis=(0, 2), initial=0.0)
+    size = max(largest[0], lever * largest[1])
+    return np.repeat([size, size / lever], 3)
 
 
 def _by_name(measures: Sequence[Measured]) -> dict[str, Measured]:
@@ -472,12 +497,14 @@ def with_ranges(assembly: Assembly, solution: Deflection) -> Deflection:
 
 def _against_judge(solution: Deflection, judge: Deflection, tolerance: float) -> Standing:
     """Compare a model with the judge: lengths against the largest length, angles against the
-    largest angle.
+    largest angle, and none that is rounding, as of a shaft that is alike about its middle.
     """
     worst, gap, bar = "", 0.0, 0.0
     for unit in dict.fromkeys(m.unit for m in judge.compared):
         pairs = [(m, j) for m, j in zip(solution.compared, judge.compared) if j.unit == unit]
         scale = float(np.linalg.norm([j.value for _, j in pairs]))
+        if scale <= ROUNDING * judge.largest[0][3 if pairs[0][1].si_unit == "rad" else 0]:
+            scale = 0.0
         for measure, reference in pairs:
             error = (measure.value - reference.value) / scale if scale else 0.0
             if abs(error) >= abs(gap):

@@ -20,6 +20,7 @@ from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import DASH
 from solidgear.strength.deflection.at_rest import (
     MOVED,
+    ROUNDING,
     WITHOUT_BAR,
     Deflection,
     Deflections,
@@ -35,8 +36,6 @@ from solidgear.trains.page.chart import COLOURS
 BAR, ENDS = "error bar", ("least", "largest")
 #: per cent; no smaller error bar is shown
 LEAST = 0.01
-#: of the largest of a motion's translations or rotations; less is rounding
-ROUNDING = 1e-8
 #: what the charts say
 LINES_SHOWN = (
     "Deflection lines of every shaft in both planes, by every model; dashed lines are bearings."
@@ -61,7 +60,7 @@ def sheet(deflected: Deflections, units: Units) -> Sheet:
     carried = [
         *acting,
         *motions(deflected, units),
-        *bearings(judge.shafts, units),
+        *bearings(judge, units),
         displacements(judge, units),
         *turned,
     ]
@@ -134,7 +133,7 @@ def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
     ]
     rows: list[list[Any]] = []
     for k, m in enumerate(measures):
-        values = [s.misalignment[k].value for s in deflected.solutions]
+        values = [_misaligned(s, k) for s in deflected.solutions]
         share = Cell(m.bar, "", percent_of(m.bar, m.value) or DASH)
         shown = [in_units(value, m.unit, units, 3) for value in values]
         name = Cell(m.name, "", f"{m.name}, {units.unit(m.unit)}")
@@ -169,7 +168,7 @@ def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
         [
             load.mesh,
             load.line_load,
-            load.skew,
+            _without_rounding(load.skew, deflected.largest[0][0]),
             load.shape,
             load.stiffness,
             load.factor,
@@ -267,14 +266,12 @@ def over_points(points: Sequence[Deflection], units: Units = ENGINEERING) -> lis
         [
             p.point.label,
             *p.mesh_forces.values(),
-            *(m.value for m in p.misalignment),
+            *(_misaligned(p, k) for k in range(len(p.misalignment))),
             *(load.factor for load in p.face_loads),
         ]
         for p in points
     ]
-    carried_rows = [
-        [p.point.label, *(b.radial for shaft in p.shafts for b in shaft.bearings)] for p in points
-    ]
+    carried_rows = [[p.point.label, *(row[1] for row in _carried(p))] for p in points]
     return [
         Table("Misalignment over the operating points", lie, lie_rows, note),
         Table("Radial bearing loads over the operating points", carried, carried_rows),
@@ -289,14 +286,14 @@ def over_cases(cases: Sequence[Deflection], units: Units = ENGINEERING) -> list[
         return []
     points = [*cases[0].lumped]
     moved = [
-        [case.point.label, name, *_rounded([m.value for m in case.displacement[name]])]
+        [case.point.label, name, *_moved([m.value for m in case.displacement[name]], case)]
         for case in cases
         for name in points
     ]
     carried = [
-        [case.point.label, b.name, b.radial, float(b.load[1]), b.moment]
+        [case.point.label, b.name, radial, axial, moment]
         for case in cases
-        for b in case.shafts[0].bearings
+        for b, (_, radial, _, axial, moment) in zip(case.shafts[0].bearings, _carried(case))
     ]
     loads = [quantity(head, "N", units, digits=4) for head in ("radial", "axial")]
     return [
@@ -319,7 +316,7 @@ def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
     rows: list[list[Any]] = []
     for shaft in deflected.shafts:
         for name, six in shaft.ports.items():
-            rows.append([f"{shaft.name}.{name}", *_rounded(six)])
+            rows.append([f"{shaft.name}.{name}", *_moved(six, deflected)])
             # the only gear of a shaft stands first, and has the name of its shaft
             only = shaft.name if name == next(iter(shaft.ports)) else ""
             keys = (name,) if deflected.load is not None else (f"{shaft.name}.{name}", only)
@@ -335,11 +332,12 @@ def housing(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
     if not deflected.mounts:
         return []
     loads = {name: [m.value for m in six] for name, six in deflected.mounts.items()}
-    most = np.abs(list(loads.values())).max(axis=0)
-    carried = [[name, *_rounded(six, most)] for name, six in loads.items()]
+    carried = [
+        [name, *map(_without_rounding, six, deflected.largest[1])] for name, six in loads.items()
+    ]
     note = "Load of the housing on each mount, in the axes of the first shaft's scene."
     motion = np.array([m.value for m in deflected.displacement["housing"]])
-    moved = [["centre of mass", *_rounded(motion)]]
+    moved = [["centre of mass", *_moved(motion, deflected)]]
     return [
         Table("Mount loads", [word("mount"), *_six(FORCE_UNITS, units)], carried, note),
         Table("Motion of the housing", [word("place"), *_six(MOVED, units)], moved),
@@ -354,10 +352,10 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
         return []
     port = deflected.load.port
     ranges = [m.open for m in deflected.judge.compared if m.open is not None]
-    ends = dict(zip(ENDS, map(_rounded, zip(*ranges))))
+    ends = {end: _moved(six, deflected.judge) for end, six in zip(ENDS, zip(*ranges))}
     rows: list[Sequence[object]] = []
     for solution in deflected.solutions:
-        row = [solution.model, *_rounded([m.value for m in solution.compared])]
+        row = [solution.model, *_moved([m.value for m in solution.compared], solution)]
         of_judge = ends.values() if solution is deflected.judge else [[None] * 6] * len(ends)
         beside = [value for six in of_judge for value in six]
         for line in _with_bars(row, [_bars(solution, port, units)]):
@@ -397,8 +395,8 @@ def _beside(kind: str) -> list[Column]:
 
 
 def _bars(deflected: Deflection, place: str, units: Units) -> list[Cell]:
-    """Return the error bars of a place, none less than a share of the largest translation or rotation;
-    empty where it has none.
+    """Return the error bars of a place, none less than a share of the largest translation or rotation,
+    and none that is rounding; empty where it has none.
     """
     if not deflected.barred or place not in deflected.displacement:
         return []
@@ -406,8 +404,10 @@ def _bars(deflected: Deflection, place: str, units: Units) -> list[Cell]:
     largest = np.abs([m.value for m in six]).reshape(2, 3).max(axis=1)
     least = np.repeat(LEAST / 100 * largest, 3)
     return [
-        Cell(None) if m.bar is None else in_units(float(max(m.bar, size)), m.unit, units, 2)
-        for m, size in zip(six, least)
+        in_units(float(max(m.bar, size)), m.unit, units, 2)
+        if m.bar is not None and _without_rounding(m.bar, moved)
+        else Cell(None)
+        for m, size, moved in zip(six, least, deflected.largest[0])
     ]
 
 
@@ -416,20 +416,42 @@ def _six(si_units: Sequence[str], units: Units) -> list[Column]:
     return [quantity(dof, si, units, digits=4) for dof, si in zip(DOF_NAMES, si_units)]
 
 
-def _rounded(
-    six: Sequence[float] | np.ndarray, scale: Sequence[float] | np.ndarray | None = None
-) -> list[float]:
-    """Return six components, zero for those that are rounding beside the largest translation or
-    rotation, or force or moment, of a scale (by default their own).
+def _without_rounding(value: float, size: float) -> float:
+    """Return a number, zero where it is rounding beside a size."""
+    return value if abs(value) > ROUNDING * size else 0.0
+
+
+def _moved(six: Sequence[float] | np.ndarray, solution: Deflection) -> list[float]:
+    """Return a motion without components that are rounding."""
+    return [*map(_without_rounding, map(float, six), solution.largest[0])]
+
+
+def _misaligned(solution: Deflection, k: int) -> float:
+    """Return a misalignment, zero where it is rounding."""
+    measure = solution.misalignment[k]
+    size = solution.largest[0][3 if measure.si_unit == "rad" else 0]
+    return _without_rounding(measure.value, size)
+
+
+def _carried(solution: Deflection) -> list[list[Any]]:
+    """Return rows of every bearing: name, radial load with its direction in degrees, axial load and
+    moment, without rounding.
     """
-    sizes = np.abs(six if scale is None else scale).reshape(2, 3)
-    least = np.repeat(ROUNDING * sizes.max(axis=1), 3)
-    return np.where(np.abs(six) > least, six, 0.0).tolist()
+    force, moment = solution.largest[1][[0, 3]]
+    rows = []
+    for shaft in solution.shafts:
+        for b in shaft.bearings:
+            radial = _without_rounding(b.radial, force)
+            at = degrees(b.azimuth) if radial else None
+            axial = _without_rounding(float(b.load[1]), force)
+            tilting = _without_rounding(b.moment, moment)
+            rows.append([f"{shaft.name}.{b.name}", radial, at, axial, tilting])
+    return rows
 
 
-def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> list[Table]:
+def bearings(solution: Deflection, units: Units = ENGINEERING) -> list[Table]:
     """Return loads of every bearing, and the elements that carry them in catalogue bearings."""
-    by_name = [(f"{shaft.name}.{b.name}", b) for shaft in shafts for b in shaft.bearings]
+    by_name = [(f"{shaft.name}.{b.name}", b) for shaft in solution.shafts for b in shaft.bearings]
     inside = [(name, bearing) for name, bearing in by_name if bearing.rows]
     loads = [
         word("bearing"),
@@ -439,9 +461,7 @@ def bearings(shafts: Sequence[ShaftDeflection], units: Units = ENGINEERING) -> l
         quantity("moment", "N m", units, digits=4),
     ]
     note = "Load of the shaft on the bearing; it acts at an angle from x towards z."
-    rows: list[list] = [
-        [name, b.radial, degrees(b.azimuth), float(b.load[1]), b.moment] for name, b in by_name
-    ]
+    rows = _carried(solution)
     if not inside:
         return [Table("Bearing loads", loads, rows, note)]
     loads += [Column("C0/P0"), Column("L10r, 1e6", name="L10r", unit="1")]

@@ -4,11 +4,11 @@ object.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from typing import Any
+from collections.abc import Callable, Sequence
+from typing import Unpack
 
 from solidgear.core import Source, explained
-from solidgear.strength.acting import Acting, Given
+from solidgear.strength.acting import Acting, Under
 from solidgear.strength.deflection import at_rest
 from solidgear.trains.file.train import Train
 
@@ -17,15 +17,9 @@ def deflect(
     source: Source | Train,
     models: str | Sequence[str] | None = None,
     *,
-    torque: Given = None,
-    of: str | None = None,
-    point: str | None = None,
-    weight: str | None = None,
-    load: str | Mapping[str, Any] | None = None,
-    case: str | None = None,
-    drive: Mapping[str, str | float] | list[str] | None = None,
-    tol: float | None = None,
+    tol: float | str | None = None,
     progress: Callable[[str], None] = lambda text: None,
+    **under: Unpack[Under],
 ) -> at_rest.Deflections:
     """Deflection of shafts at rest: displacements, misalignment of gears, bearing loads.
 
@@ -36,28 +30,21 @@ def deflect(
     models : str or sequence of str, optional
         Models of all shafts that are compared, the finest last; by default rigid, euler,
         timoshenko and harmonic, of shafts with cuts of their plain parts.
-    torque : str or float, optional
-        Torque on a train, such as ``"115 N*m"`` (a number in N m); by default the operating points
-        of the train, the first of which is compared.
-    of : str, optional
-        Shaft of the torque; the engine's by default.
-    point : str, optional
-        Operating point of a train, by name or number.
-    weight : str, optional
-        With a torque: direction of weight in the first shaft's scene, such as ``"-z"``.
-    load : str or dict, optional
-        Load on a shaft in place of those of its scene: ``"x=2 kN, z=-500 N"`` at the port.
-    case : str, optional
-        Case of the loads of a shaft, by name or number; by default all, the first of which is
-        compared.
-    drive : mapping of str to str or float, optional
-        Torques that enter a shaft at a bearing, mass or point and leave it at the port, or where
-        its file says, such as ``{"B": "115 N*m"}``; numbers in N m.
     tol : float, optional
         Relative error that meshes of harmonic shafts may leave in the motions of gears; a tenth of
         the tolerance of the train by default.
     progress : callable
         Called with a sentence at every step.
+    **under
+        What acts on a train: `torque`, such as ``"115 N*m"`` (a number in N m), with the shaft `of`
+        it, the engine's by default, and the direction of `weight` in the first shaft's scene, such
+        as ``"-z"``; or an operating `point` by name or number. By default all points of the train,
+        the first of which is compared.
+
+        On a shaft: `load` at the port in place of the loads of its scene, such as
+        ``"x=2 kN, z=-500 N"`` or a dict; `case` of its loads, by name or number, by default all, the
+        first of which is compared; `drive`, torques that enter at a bearing, mass or point and leave
+        at the port, or where its file says, such as ``{"B": "115 N*m"}`` (numbers in N m).
 
     Returns
     -------
@@ -77,9 +64,8 @@ def deflect(
     >>> [m.name for m in found.judge.misalignment], len(found.judge.shafts[0].bearings)
     (['E', 'P', 'G', 'shaft angle'], 3)
     """
-    acting = Acting(torque, of, point, weight, load, case, drive)
-    assembly, at = acting.read(source, tol)
-    chosen = any(given is not None for given in (torque, point, case))
+    assembly, at = Acting(**under).read(source, tol)
+    chosen = any(under.get(key) is not None for key in ("torque", "point", "case"))
     every_point = not chosen and len(assembly.train.operation) > 1
     names = (models,) if isinstance(models, str) else models or at_rest.MODELS
     with explained(source):

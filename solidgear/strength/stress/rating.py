@@ -2,8 +2,8 @@
 source.
 
 A notch hands out its factors (:class:`~solidgear.strength.stress.rated_notch.RatedNotch`): a fillet
-those of the shaft's solid, other notches those of the norm. Inputs of the norm that were not given are 1, and their source says
-*assumed*.
+those of the shaft's solid, other notches those of the norm. Inputs of the norm that were not given
+are 1, and their source says *assumed*.
 """
 
 from __future__ import annotations

@@ -210,7 +210,7 @@ def shaft_stress(
 
 def check_tolerance(tolerance: float) -> None:
     """Refuse a relative error bar that no mesh reaches."""
-    if not isinstance(tolerance, (int, float)) or not FINEST <= tolerance < 1:
+    if not FINEST <= tolerance < 1:
         raise SolidgearError(
             f"tolerance = {show(tolerance)}: give a relative error bar of form factors from {FINEST:g} "
             "to 1"

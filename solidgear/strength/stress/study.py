@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from typing import Any
+from typing import Any, Unpack
 
-from solidgear.core import SolidgearError, Source, explained, show
-from solidgear.strength.acting import Acting, Given
+from solidgear.core import Source, explained, read_tolerance
+from solidgear.strength.acting import Acting, Under
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.notch import ENOUGH
@@ -18,18 +18,12 @@ def stress(
     source: Source | Train,
     model: str = JUDGE,
     *,
-    torque: Given = None,
-    of: str | None = None,
-    point: str | None = None,
-    weight: str | None = None,
-    load: str | Mapping[str, Any] | None = None,
-    case: str | None = None,
-    drive: Mapping[str, str | float] | list[str] | None = None,
-    tol: float = ENOUGH,
-    local: float | None = None,
+    tol: float | str = ENOUGH,
+    local: float | str | None = None,
     conditions: Mapping[str, Any] | Conditions | None = None,
     duty: bool = False,
     progress: Callable[[str], None] = lambda text: None,
+    **under: Unpack[Under],
 ) -> StressAtRest:
     """Stress of shafts at rest: section forces, nominal stress, stress on fillets, DIN 743.
 
@@ -39,8 +33,6 @@ def stress(
         A scene or train: its file (TOML), the tables of one, or an object.
     model : str
         Model for bearing reactions.
-    torque, of, point, weight, load, case, drive
-        As of :func:`solidgear.deflect`.
     tol : float
         Error bar allowed for a form factor, relative.
     local : float, optional
@@ -56,6 +48,8 @@ def stress(
         shares or hours and speeds.
     progress : callable
         Called with a sentence at every step.
+    **under
+        What acts, as of :func:`solidgear.deflect`.
 
     Returns
     -------
@@ -78,13 +72,11 @@ def stress(
     >>> notch.name, f'{notch.forces[3]:.1f} N m', f'{notch.found.factors["bending"].value:.1f}'
     ('head fillet', '431.2 N m', '2.2')
     """
-    if not isinstance(conditions, (Conditions, Mapping, type(None))):
-        raise SolidgearError(
-            f'`conditions` {show(conditions)}: give keys with values, {{"roughness": "6.3 um"}}'
-        )
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
-    settings = StressSettings(tol, conditions, duty, local)
-    assembly, at = Acting(torque, of, point, weight, load, case, drive).read(source)
+    settings = StressSettings(
+        read_tolerance(tol), conditions, duty, None if local is None else read_tolerance(local)
+    )
+    assembly, at = Acting(**under).read(source)
     with explained(source):
         return stress_at_rest(assembly, at, model, settings, progress)

@@ -27,11 +27,11 @@ from solidgear.core import (
     listed,
     nearest,
     pinned,
+    read_tolerance,
     rubin,
     show,
 )
 from solidgear.core.bounds.refining import Meshed, refined
-from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.reduction.craig_bampton import craig_bampton
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring

@@ -26,7 +26,7 @@ from solidgear.core import (
     listed,
     near,
 )
-from solidgear.core import as_written as scene_as_written
+from solidgear.core.loading import as_written as scene_as_written
 from solidgear.core.reduction.matrix_units import MATRIX_UNITS
 from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.core.scene.typed import Problems

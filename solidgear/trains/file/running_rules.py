@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
-from math import fsum, isclose, pi
+from collections.abc import Iterator
+from math import isclose, pi
 
 from solidgear.core import Scene, SceneError, listed, nearest
+from solidgear.core.scene.load_rules import duty_problems
 from solidgear.core.scene.units import TYPED
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.shafting import Shafting
@@ -66,7 +67,7 @@ def running_problems(train: Shafting) -> Iterator[SceneError]:
         yield from (
             problem.located(None, prefix=("operation", k)) for problem in _point(train, point)
         )
-    yield from _duty(train.operation)
+    yield from duty_problems(train.operation, "operation", "operating point")
     for side, rotors in train.shafts.items():
         scene = rotors.scene
         holding = [b.name for b in scene.bearings if b.matrix is not None and b.matrix[4][4] > 0]
@@ -116,30 +117,6 @@ def _against_teeth(train: Shafting, point: OperatingPoint) -> Iterator[SceneErro
         yield SceneError(
             f"the teeth turn the {side} at {speed * 30 / pi:.6g} rpm; correct one, or leave it out",
             path=("output_speed",),
-        )
-
-
-def _duty(points: Sequence[OperatingPoint]) -> Iterator[SceneError]:
-    """Yield problems of operating points of one name, and of an incomplete duty table."""
-    names = [point.name for point in points]
-    for k, name in enumerate(names):
-        if name and name in names[:k]:
-            reason = f"{name!r} is there twice; give the operating points names of their own"
-            yield SceneError(reason, path=("operation", k, "name"))
-            return
-    for key in ("share", "hours"):
-        values = [getattr(point, key) for point in points]
-        if any(values) and None in values:
-            lacking = values.index(None)
-            reason = f"this key is missing; a duty table gives {key} for every point"
-            yield SceneError(reason, path=("operation", lacking, key))
-            return
-    shares = [point.share for point in points if point.share is not None]
-    if shares and abs(fsum(shares) - 1) > TYPED:
-        yield SceneError(
-            f"the shares of {len(shares)} operating points sum to {fsum(shares):.6g}; they must "
-            "sum to 1",
-            path=("operation", 0, "share"),
         )
 
 

@@ -25,7 +25,7 @@ def check(
     model: str = MODEL,
     options: Mapping[str, Any] | None = None,
     *,
-    case: str | None = None,
+    case: str | int | None = None,
 ) -> Check:
     """Which models hold for a scene or train, which do not, and why; solves light meshes only.
 

@@ -19,12 +19,11 @@ from solidgear.core import (
     Sheeted,
     SolidgearError,
     Source,
-    as_written,
     explained,
     is_train,
     name_of_source,
 )
-from solidgear.core.loading import shaft
+from solidgear.core.loading import as_written, shaft
 from solidgear.core.scene.load_rules import named_case
 from solidgear.core.scene.toml_file import name_of
 from solidgear.show.options import speed_of

@@ -59,8 +59,8 @@ LOOP = (
 
 class Operating:
     """A train with the shafts at models (bodies or ``rigid``, one for each shaft or one for all; by
-    default Timoshenko beams without cuts), to be settled at any operating point; `choice` is the place in the ranges of catalogue data,
-    and bearings with a load of their own are refused.
+    default Timoshenko beams without cuts), to be settled at any operating point; `choice` is the
+    place in the ranges of catalogue data, and bearings with a load of their own are refused.
 
     Examples
     --------

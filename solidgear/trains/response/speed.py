@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from math import pi
 from pathlib import Path
@@ -17,7 +18,7 @@ from solidgear.trains.response.at_speed import refuse_share, turns_of_pinion
 from solidgear.trains.response.spectrum import Spectrum, read_spectrum
 
 if TYPE_CHECKING:
-    File: TypeAlias = str | Path | None
+    File: TypeAlias = str | os.PathLike | None
 else:
     File = Path | None
 

@@ -4,9 +4,10 @@ object.
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from math import isfinite
-from typing import TYPE_CHECKING, Any, TypeAlias, Unpack
+from typing import Any, TypeAlias, Unpack
 
 import numpy as np
 
@@ -22,9 +23,6 @@ from solidgear.trains.response.receptance import End
 from solidgear.trains.response.respond import respond
 from solidgear.trains.response.sheet import Receptances, Responses
 from solidgear.trains.response.speed import Speed
-
-if TYPE_CHECKING:
-    from solidgear.trains.response.speed import File
 
 #: forces by port and component, or texts such as ``gear.gear:z=100``, N and N m
 Forces: TypeAlias = Mapping[str, float] | Iterable[str] | None
@@ -42,7 +40,7 @@ def response(
     orders: int | None = None,
     speed: str | None = None,
     of: str | None = None,
-    measured: File = None,
+    measured: str | os.PathLike | None = None,
     fit_speed: float | None = None,
     within: float | None = None,
     damping: str = "hysteretic",

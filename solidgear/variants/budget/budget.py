@@ -154,8 +154,8 @@ def _studied(
     inputs = open_inputs(scene)
     if not inputs:
         raise SolidgearError(
-            f"{scene.name}: no input is open, since no bearing has an estimated inside or a class "
-            "of clearance and the file has no [uncertain]"
+            f"{scene.name}: no input is open, since no bearing has an estimated inside, a class "
+            'of clearance or status = "assumed" in the file, and it has no [uncertain]'
         )
     study = _Study(scene, inputs)
     for k, open_input in enumerate(inputs):

@@ -15,7 +15,7 @@ from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.bearings.catalogued import End
 from solidgear.bearings.geometry import inner_geometry
 from solidgear.bearings.inside import Inside
-from solidgear.bearings.rating import ratings
+from solidgear.bearings.rating import ratings_of_one
 from solidgear.bearings.ribs import estimated_stiffness
 from solidgear.core import OpenNumbers, Quantity, Scene, SolidgearError
 from solidgear.core.judge.open_numbers import OpenRecord
@@ -160,9 +160,7 @@ def _candidates(data: Catalogue) -> list[Candidate]:
     geometry = inner_geometry(data)
     out = []
     # balls are estimated from C, rollers from C0
-    rating = ratings(
-        data.with_changes(arrangement="single") if data.paired else data, geometry.middle
-    )
+    rating = ratings_of_one(data, geometry.middle)
     if data.balls and data.load_rating is None:
         out.append(Candidate("load_rating", rating.dynamic))
     if not data.balls and data.static_rating is None and data.load_rating is None:
@@ -171,8 +169,9 @@ def _candidates(data: Catalogue) -> list[Candidate]:
         if key == "conformity":
             out.append(Candidate(key, geometry.middle.conformity))
             continue
-        ends = [_of(geometry.softer, key, "softer"), _of(geometry.stiffer, key, "stiffer")]
         value = _of(geometry.middle, key, "middle")
+        # fewer balls are larger, but not between the ends where their number is rounded
+        ends = [value, _of(geometry.softer, key, "softer"), _of(geometry.stiffer, key, "stiffer")]
         out.append(Candidate(key, value, (min(ends), max(ends))))
     return out
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from solidgear.core import SolidgearError, Source
+from solidgear.core import SolidgearError, Source, read_tolerance
 from solidgear.variants.optimise.wish import FIRST, Rows
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
@@ -50,7 +50,7 @@ class Designs:
 
 
 def scene_designs(
-    scene: Source, design: Design, names: Sequence[str], model: str | None, tol: float | None
+    scene: Source, design: Design, names: Sequence[str], model: str | None, tol: float | str | None
 ) -> Designs:
     """Return the designs of a scene with the numbers of these names: each by the cheapest mesh whose
     bars are within the tolerance, or by a model that is given.
@@ -59,7 +59,7 @@ def scene_designs(
     base = variants.variant(0)  # the file as it is
     variants.refuse_hopeless()
     variants.refuse_unknown_words()
-    tol = base.ask.tolerance / 10 if tol is None else tol
+    tol = base.ask.tolerance / 10 if tol is None else read_tolerance(tol)
     solved, unbarred = "the cheapest mesh whose bars are within the tolerance", ""
     if model is not None:
         solved = f"the {model} model, without error bars"
@@ -109,8 +109,8 @@ def train_designs(
     design: Design,
     names: Sequence[str],
     model: str | None,
-    tol: float | None,
-    point: str | None,
+    tol: float | str | None,
+    point: str | int | None,
     every_point: bool,
 ) -> Designs:
     """Return the designs of a train, with the numbers of these names at an operating point or at all;

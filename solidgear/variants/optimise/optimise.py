@@ -87,9 +87,9 @@ def optimise(
     keep_sum: str | Iterable[str] = (),
     follow: str | Iterable[str] = (),
     model: str | None = None,
-    tol: float | None = None,
+    tol: float | str | None = None,
     most: int | None = None,
-    point: str | None = None,
+    point: str | int | None = None,
     every_point: bool = False,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Optimum:

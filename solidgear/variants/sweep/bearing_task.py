@@ -356,7 +356,7 @@ SPARE = 6
 
 def settled_for_sweep(
     variants: BearingVariants,
-    tol: float | None = None,
+    tol: float | str | None = None,
     *,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Settled:

@@ -27,7 +27,7 @@ class Bench:
         reduction: str,
         kept: int,
         settings: Mapping[Any, Mapping],
-        tol: float | None = None,
+        tol: float | str | None = None,
         highest_hz: float | None = None,
     ):
         self._parameters = reduction, kept, settings, tol, highest_hz

@@ -161,7 +161,7 @@ class OfTrain(Group):
         list[str] | None,
         typer.Option(
             "--ask",
-            help="Numbers of rows, repeatable. Of a shaft: answer (by default), deflect, bearing or "
+            help="Numbers of rows, comma-separated or repeated. Of a shaft: answer (by default), deflect, bearing or "
             "stress. Of a train: system-modes, response, deflect (by default), bearing or contact.",
         ),
     ] = None

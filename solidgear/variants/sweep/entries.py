@@ -3,8 +3,8 @@
 VALUES are ``a:b:n``, ``log:a:b:n`` or a list ``a,b,c``; a number is plain (SI) or has a unit. A list
 may hold texts as well, such as designations; in quotes a number is a text too. Of whole numbers, such
 as teeth, ``a:b`` is all of them; of others it is a range whose places a search may choose.
-``PATH+PATH=VALUES`` gives several entries the same value. A value goes into the tables of the file as a person would have
-written it there, so that all rules of the file apply.
+``PATH+PATH=VALUES`` gives several entries the same value. A value goes into the tables of the file
+as a person would have written it there, so that all rules of the file apply.
 
 A study over entries puts them into tables here, combines them by a ``Design``, reads them by
 ``FileVariants`` and keeps the rows of a ``FileTask``.  Tables become a scene by ``scene_of`` of

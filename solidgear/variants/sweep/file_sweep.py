@@ -75,9 +75,9 @@ def sweep(
         Of a train: `pinion` and `gear`, models as of ``system-modes``, and `models` of shafts by
         any name; `ask`, some of ``system-modes``, ``response``, ``deflect``, ``bearing`` and
         ``contact``; `max_frequency` in Hz; `point`, an operating point by its name or number;
-        `every_point`, a row for each of them; `mesh`, whose transmission error drives the train; `local_harmonics` of every mesh;
-        `reduction`, `kept` and `settings` as of an assembly; `tolerance` that meshes of harmonic
-        shafts may leave.
+        `every_point`, a row for each of them; `mesh`, whose transmission error drives the train;
+        `local_harmonics` of every mesh; `reduction`, `kept` and `settings` as of an assembly;
+        `tolerance` that meshes of harmonic shafts may leave.
 
     Returns
     -------

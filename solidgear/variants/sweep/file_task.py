@@ -12,7 +12,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.core import Sheeted, SolidgearError, listed, nearest, pinned
+from solidgear.core import Sheeted, SolidgearError, listed, nearest, pinned, show
+from solidgear.core.errors import names_in
 from solidgear.core.machine.threads import usable_cores
 from solidgear.core.machine.version import VERSION
 from solidgear.core.models.limits import number
@@ -27,6 +28,19 @@ BOUND, BARS = "reduction_bound", "about_bars"
 
 #: called with the number of rows that are there, of rows in all, and the present step
 Progress = Callable[[int, int, str], None]
+
+
+def named_kinds(ask: str | Iterable[str], known: Sequence[str], of: str) -> tuple[str, ...]:
+    """Return the kinds of numbers of rows that are asked for, with commas or one by one, in the order
+    of those that are `known`; refuse others.
+    """
+    asked = {word.strip() for text in names_in(ask) for word in text.split(",") if word.strip()}
+    for word in asked.difference(known):
+        raise SolidgearError(
+            f"`ask` {show(word, 40)}: of {of} give one or more of {', '.join(known)}"
+            f"{nearest(word, known)}"
+        )
+    return tuple(word for word in known if word in asked)
 
 
 def without_bars(model: str) -> str:

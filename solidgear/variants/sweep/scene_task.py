@@ -13,19 +13,17 @@ from solidgear.core import (
     Body,
     Scene,
     Settled,
-    SolidgearError,
     Source,
     as_supports,
     build,
-    nearest,
-    show,
+    read_tolerance,
 )
 from solidgear.core.judge.solving import answer_of_body
 from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of, one_shaft
 from solidgear.variants.sweep.bench import surface
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import BARS, FileTask, without_bars
+from solidgear.variants.sweep.file_task import BARS, FileTask, named_kinds, without_bars
 from solidgear.variants.sweep.file_variants import (
     MAIN,
     SceneVariants,
@@ -157,7 +155,7 @@ def scene_task(
     design: Design,
     *,
     model: str | None = None,
-    tolerance: float | None = None,
+    tolerance: float | str | None = None,
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
     ask: Iterable[str] = (),
@@ -173,6 +171,8 @@ def scene_task(
     >>> thin["C_zz"] > thick["C_zz"]
     True
     """
+    if tolerance is not None:
+        tolerance = read_tolerance(tolerance)
     checked = {} if model is None else LADDER[model].checked(dict(options or {}))
     variants = scene_variants(scene, design, "segment.1.diameter=30 mm:40 mm:5")
     first, usual = variants.first_sound()
@@ -183,10 +183,4 @@ def scene_task(
 
 def asked_of(ask: Iterable[str]) -> tuple[str, ...]:
     """Return the kinds of numbers of rows in their order; refuse words of none."""
-    asked = {*ask} or {ANSWER}
-    for word in asked.difference(ASKED):
-        raise SolidgearError(
-            f"`ask` {show(word, 40)}: of a shaft give one or more of {', '.join(ASKED)}"
-            f"{nearest(word, ASKED)}"
-        )
-    return tuple(word for word in ASKED if word in asked)
+    return named_kinds(ask, ASKED, "a shaft") or (ANSWER,)

@@ -67,7 +67,7 @@ def places_of(scene: Scene) -> list[str]:
 
 
 def numbers_of(
-    scene: Scene, ask: Sequence[str], model: str | None, tolerance: float | None
+    scene: Scene, ask: Sequence[str], model: str | None, tolerance: float | str | None
 ) -> dict[str, Any]:
     """Return the numbers of a shaft at rest by column, on a model or on the solid that has error
     bars within a tolerance.
@@ -98,7 +98,7 @@ def _points(assembly: Assembly) -> tuple[OperatingPoint, ...]:
     return assembly.train.operation or (AT_REST,)
 
 
-def _deflection(scene: Scene, model: str, tolerance: float | None) -> dict[str, Any]:
+def _deflection(scene: Scene, model: str, tolerance: float | str | None) -> dict[str, Any]:
     """Return motions and loads of bearings, the largest of all cases."""
     assembly = Assembly.of(scene, kept=FEW, tol=tolerance)
     out: dict[str, Any] = {}

@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterable, Mapping
 from typing import Any
 
 from solidgear.core import LADDER, SolidgearError, Source, document_of
+from solidgear.core.arguments import checked
 from solidgear.variants.sweep.bearing_task import (
     BearingTask,
     bars_of_rows,
@@ -35,8 +36,8 @@ def task_of(
     """
     document = document_of(source)
     if document.describes_train:
-        return train_task(document, design, **how)
-    return shaft_task(document, design, progress=progress, **how)
+        return checked(train_task, "sweep")(document, design, **how)
+    return checked(shaft_task, "sweep")(document, design, progress=progress, **how)
 
 
 def shaft_task(
@@ -44,7 +45,7 @@ def shaft_task(
     design: Design,
     *,
     model: str | None = None,
-    tolerance: float | None = None,
+    tolerance: float | str | None = None,
     options: Mapping[str, Any] | None = None,
     n: int | None = None,
     reduction_tolerance: float | None = None,
@@ -70,7 +71,7 @@ def shaft_task(
 def _one_body(
     variants: BearingVariants,
     model: str | None,
-    tolerance: float | None,
+    tolerance: float | str | None,
     options: Mapping[str, Any],
     n: int | None,
     reduced: float,

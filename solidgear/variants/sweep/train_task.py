@@ -12,10 +12,8 @@ import numpy as np
 from solidgear.core import (
     SolidgearError,
     Source,
-    nearest,
-    show,
+    read_tolerance,
 )
-from solidgear.core.judge.answer import read_tolerance
 from solidgear.core.models.limits import number
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
 from solidgear.teeth.study import touching
@@ -38,7 +36,7 @@ from solidgear.variants.sweep.bench import Bench
 from solidgear.variants.sweep.curves import force_of, misaligned
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.error_curves import over_torque
-from solidgear.variants.sweep.file_task import BARS, BOUND, FileTask
+from solidgear.variants.sweep.file_task import BARS, BOUND, FileTask, named_kinds
 from solidgear.variants.sweep.file_variants import tables_for_plan
 from solidgear.variants.sweep.life_numbers import life_columns, life_numbers
 from solidgear.variants.sweep.shaft_numbers import mass_alone
@@ -295,11 +293,11 @@ def train_task(
     ask: Iterable[str] = BY_DEFAULT,
     n: int | None = None,
     max_frequency: float | None = None,
-    point: str | None = None,
+    point: str | int | None = None,
     every_point: bool = False,
     reduction: str = "rubin",
     kept: int = KEPT,
-    tolerance: float | None = None,
+    tolerance: float | str | None = None,
     local_harmonics: Sequence[int] = (),
     settings: Mapping[Any, Mapping] | None = None,
 ) -> TrainTask:
@@ -314,11 +312,7 @@ def train_task(
     >>> [row["status"] for row in task.rows(range(3))], task.bench.made
     (['ok', 'ok', 'ok'], 2)
     """
-    asked = set(ask)
-    for word in asked.difference(ASKED):
-        raise SolidgearError(
-            f"`ask` {show(word, 40)}: give one or more of {', '.join(ASKED)}{nearest(word, ASKED)}"
-        )
+    asked = named_kinds(ask, ASKED, "a train")
     if not asked:
         raise SolidgearError(f"`ask`: name one or more of {', '.join(ASKED)}")
     by_side = {"pinion": pinion, "gear": gear}
@@ -346,7 +340,7 @@ def train_task(
     return TrainTask(
         variants,
         models={side: chosen.get(side, JUDGE) for side in usual.shafts},
-        ask=tuple(word for word in ASKED if word in asked),
+        ask=asked,
         n=n,
         max_frequency=max_frequency,
         reduction=reduction,

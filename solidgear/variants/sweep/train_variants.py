@@ -41,7 +41,7 @@ class TrainVariants(FileVariants[Train]):
     """
 
     #: operating point of all rows, by its name or number; the first by default
-    point: str | None = None
+    point: str | int | None = None
     _scenes: dict[tuple, Scene] = field(default_factory=dict, repr=False, compare=False)
 
     def operating_point(self, index: int, train: Train) -> OperatingPoint | None:
@@ -116,7 +116,7 @@ def train_variants(
     train: Source,
     design: Design,
     *,
-    point: str | None = None,
+    point: str | int | None = None,
     every_point: bool = False,
     local_harmonics: Sequence[int] = (),
 ) -> TrainVariants:
@@ -215,7 +215,7 @@ def _points(tables: Tables) -> list[Any]:
     return table if isinstance(table, list) else [table]
 
 
-def _every_point(tables: Tables, varied: Sequence[Entry], point: str | None) -> Entry:
+def _every_point(tables: Tables, varied: Sequence[Entry], point: str | int | None) -> Entry:
     """Return the operating points of a file as an entry that varies."""
     if point is not None or any(map(_of_operation, varied)):
         raise SolidgearError(
