@@ -125,6 +125,6 @@ def test_a_torque_that_no_teeth_bear_is_told(train):
 def test_two_operating_points_of_one_name_are_refused():
     point, other = BOX.operation
     twice = (point, other.with_changes(name=point.name))
-    with pytest.raises(SceneError, match="'full' is there twice") as error:
+    with pytest.raises(SceneError, match="another operating point has this name") as error:
         BOX.with_changes(operation=twice)
     assert error.value.problems[0].path == ("operation", 1, "name")

@@ -503,7 +503,8 @@ def _against_judge(solution: Deflection, judge: Deflection, tolerance: float) ->
     for unit in dict.fromkeys(m.unit for m in judge.compared):
         pairs = [(m, j) for m, j in zip(solution.compared, judge.compared) if j.unit == unit]
         scale = float(np.linalg.norm([j.value for _, j in pairs]))
-        if scale <= ROUNDING * judge.largest[0][3 if pairs[0][1].si_unit == "rad" else 0]:
+        moved = judge.largest[0][3 if pairs[0][1].si_unit == "rad" else 0]
+        if scale <= ROUNDING * moved:
             scale = 0.0
         for measure, reference in pairs:
             error = (measure.value - reference.value) / scale if scale else 0.0
