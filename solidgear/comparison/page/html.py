@@ -31,14 +31,7 @@ from solidgear.show.run_tables import pairs_of
 from solidgear.show.table import Cell, Table
 from solidgear.show.units import Units, digits_for, units_named
 from solidgear.show.viewer import TURNED, fragment_of
-from solidgear.show.words import (
-    DASH,
-    bar_percent,
-    percent,
-    plus_minus,
-    seconds,
-    short_percent,
-)
+from solidgear.show.words import DASH, bar_percent, percent, plus_minus, seconds, short_percent
 from solidgear.trains.page import input_tables
 
 log = logging.getLogger(__name__)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import cached_property
+
 import numpy as np
 import scipy.sparse as sp
 
@@ -23,11 +25,12 @@ class Symmetric:
     def __matmul__(self, columns: np.ndarray) -> np.ndarray:
         out = self.upper @ columns
         out += self.upper.T @ columns
-        out -= self.diagonal()[:, None] * columns
+        out -= self.diagonal[:, None] * columns
         return out
 
+    @cached_property
     def diagonal(self) -> np.ndarray:
-        """Return the main diagonal (n,)."""
+        """The main diagonal (n,), which every product takes."""
         return self.upper.diagonal()
 
     def tocsr(self) -> sp.csr_matrix:

@@ -47,7 +47,7 @@ class EnrichedBlock:
 
 def enriched_block(block: Block, more: Enrichment) -> EnrichedBlock:
     """Return what one order more adds to a block, from what it adds to its mesh."""
-    diagonal = more.stiffness.diagonal()
+    diagonal = more.stiffness.diagonal
     if block.parity is None:
         whole = Whole()
         return EnrichedBlock(

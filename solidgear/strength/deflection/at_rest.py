@@ -117,6 +117,10 @@ class Deflection:
             loads += [np.asarray(load.six) for load in self.load.acting]
         return _sizes(moved, length), _sizes(loads, 1 / length)
 
+    def largest_beside(self, measure: Measured) -> float:
+        """Return the size beside which a number of motion may be rounding."""
+        return float(self.largest[0][3 if measure.si_unit == "rad" else 0])
+
     @property
     def compared(self) -> tuple[Measured, ...]:
         """Numbers by which models are compared: the misalignment, or the motion of the lumped point
@@ -503,8 +507,7 @@ def _against_judge(solution: Deflection, judge: Deflection, tolerance: float) ->
     for unit in dict.fromkeys(m.unit for m in judge.compared):
         pairs = [(m, j) for m, j in zip(solution.compared, judge.compared) if j.unit == unit]
         scale = float(np.linalg.norm([j.value for _, j in pairs]))
-        moved = judge.largest[0][3 if pairs[0][1].si_unit == "rad" else 0]
-        if scale <= ROUNDING * moved:
+        if scale <= ROUNDING * judge.largest_beside(pairs[0][1]):
             scale = 0.0
         for measure, reference in pairs:
             error = (measure.value - reference.value) / scale if scale else 0.0

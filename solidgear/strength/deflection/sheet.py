@@ -429,8 +429,7 @@ def _moved(six: Sequence[float] | np.ndarray, solution: Deflection) -> list[floa
 def _misaligned(solution: Deflection, k: int) -> float:
     """Return a misalignment, zero where it is rounding."""
     measure = solution.misalignment[k]
-    size = solution.largest[0][3 if measure.si_unit == "rad" else 0]
-    return _without_rounding(measure.value, size)
+    return _without_rounding(measure.value, solution.largest_beside(measure))
 
 
 def _carried(solution: Deflection) -> list[list[Any]]:
