@@ -1,0 +1,44 @@
+"""Answers at several tolerances, and on coarser and finer meshes, never exclude each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from itertools import combinations
+from pathlib import Path
+
+from validation.agree.commands import by_answer, by_modes, by_stiffness
+from validation.agree.relation import ROUNDING, Relation, meeting
+
+KIND = "nested"
+TOLERANCES = (1e-2, 1e-3, 1e-4)
+#: factors on the cells of a mesh that the program chooses itself
+REFINEMENTS = (0.7, 1.0, 1.4)
+
+
+def of_scene(scene: Path, tolerances: tuple[float, ...] = TOLERANCES) -> Iterator[Relation]:
+    """Answers of a shaft at several tolerances; a bound from one side never moves to the other."""
+    claims = {f"{tol:g}": by_answer(scene, "--tol", tol) for tol in tolerances}
+    yield from meeting(scene.name, KIND, claims)
+    for (coarse, numbers), (fine, others) in combinations(claims.items(), 2):
+        for name in numbers.keys() & others.keys():
+            a, b = numbers[name], others[name]
+            seen = f"{a} at {coarse}, {b} at {fine}"
+            if a.low < a.value == a.high:
+                lower = b.value <= a.value + ROUNDING * a.size
+                yield Relation(
+                    scene.name, KIND, f"{name} never rises: {coarse}, {fine}", lower, seen
+                )
+            if a.low == a.value < a.high:
+                higher = b.value >= a.value - ROUNDING * a.size
+                yield Relation(
+                    scene.name, KIND, f"{name} never falls: {coarse}, {fine}", higher, seen
+                )
+
+
+def of_body(body: Path) -> Iterator[Relation]:
+    """Stiffness and modes of a body without an axis on coarser and finer meshes."""
+    for function in (by_stiffness, by_modes):
+        claims = {
+            f"refinement {r}": function(body, "--set", f"refinement={r}") for r in REFINEMENTS
+        }
+        yield from meeting(body.name, KIND, claims)
