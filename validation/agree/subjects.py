@@ -24,12 +24,14 @@ def files_in(places: Iterable[Path]) -> list[Path]:
 
 
 def _can_be_read(file: Path) -> bool:
-    """Whether a file describes something: one that is refused is asked of elsewhere."""
+    """Whether a file describes something or crashes; one that is refused has no numbers."""
     for read in (sg.load, sg.load_train):
         try:
             read(file)
         except SolidgearError:
             continue
+        except Exception:
+            return True
         return True
     return False
 

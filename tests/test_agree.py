@@ -1,0 +1,52 @@
+"""What two commands say of one thing is the same: the short version of ``validation.agree``."""
+
+from pathlib import Path
+
+from validation.agree import described, nested, same_number
+from validation.agree.commands import OF_A_BEAM
+from validation.agree.relation import Number, failed, meeting
+
+ROOT = Path(__file__).parent.parent
+STEPPED = ROOT / "geometry" / "shaft_stepped.toml"
+
+
+def all_hold(relations, at_least):
+    relations = list(relations)
+    assert len(relations) >= at_least  # a command that is refused would say nothing
+    assert failed(relations) == []
+
+
+def test_two_numbers_meet_where_their_intervals_do():
+    wide = Number.within(1.0, 0.1)
+    assert wide.meets(Number.within(1.15, 0.06))
+    assert not wide.meets(Number.within(1.15, 0.04))
+    # a bound from one side claims nothing on the other
+    assert not Number.within(1.0, 0.1, side="above").meets(Number.within(0.95, 0.01))
+    assert Number.within(2.0, 0.1).times(-0.5).meets(Number.within(-1.0, 0.0))
+    claims = {"one": {"C_zz": wide}, "other": {"C_zz": Number.within(2.0, 0.1)}}
+    assert [r.holds for r in meeting("file", "kind", claims)] == [False]
+
+
+def test_a_beam_is_one_number_by_every_command():
+    claims = {
+        name: {key: n for key, n in function(STEPPED, "-f", "timoshenko").items() if "C_" in key}
+        for name, function in OF_A_BEAM.items()
+    }
+    all_hold(meeting("shaft_stepped", same_number.KIND, claims), at_least=10)
+
+
+def test_answers_at_several_tolerances_do_not_exclude_each_other():
+    all_hold(nested.of_scene(STEPPED, tolerances=(3e-2, 1e-3)), at_least=6)
+
+
+def test_a_shaft_described_otherwise_has_the_same_numbers():
+    all_hold(described.of_scene(STEPPED, tol=0.05), at_least=50)
+
+
+def test_a_factor_that_is_wrong_is_seen(monkeypatch):
+    # frequencies of a shaft four times as heavy are halved; without the factor they must not agree
+    heavier = next(r for r in described.REWRITINGS if r.name == "four times as heavy")
+    wrong = described.Rewriting(heavier.name, heavier.change)
+    monkeypatch.setattr(described, "REWRITINGS", (wrong,))
+    seen = failed(described.of_scene(STEPPED, tol=0.05))
+    assert len(seen) == 3 and all("four times as heavy" in relation.name for relation in seen)
