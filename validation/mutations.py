@@ -841,12 +841,12 @@ MUTATIONS = (
         "tests/test_gear_wheels.py::test_a_planet_nearer_to_its_ring_has_less_backlash",
     ),
     Mutation(
-        "teeth: bearings settle on teeth that are solved",
+        "teeth: bearings settle with the force at the middle of the face",
         "solidgear/trains/load/operation.py",
-        "at_point",
-        "Assembly(train, solves_teeth=False)",
-        "Assembly(train)",
-        "tests/test_tooth_keys.py::test_an_assembly_solves_the_teeth_at_its_operating_point",
+        "Operating._at",
+        "self.assembly.at(point, self.choice)",
+        "self.assembly.on_flank(point.coast)",
+        "tests/test_settled_state.py::test_lives_are_those_of_the_loads_that_deflect_shows",
     ),
     Mutation(
         "teeth: rows of a sweep settle from the rows before them",

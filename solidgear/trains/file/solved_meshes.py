@@ -1,0 +1,42 @@
+"""Meshes of a train with the numbers of their teeth at operating points, which the train keeps so that
+they are solved once: every study of the same train reads them.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING
+
+from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.planetary import Planetary
+from solidgear.trains.file.tables import Mesh
+
+if TYPE_CHECKING:
+    from solidgear.trains.file.train import Train
+
+#: all meshes of a train, and its planetary stages
+Meshes = tuple[tuple[Mesh, ...], dict[str, Planetary]]
+
+
+@dataclass(frozen=True, eq=False)
+class SolvedMeshes:
+    """What the teeth of a train give, which follows from the train: all are equal."""
+
+    by_load: Mapping[OperatingPoint, Meshes] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, solved: Mapping[OperatingPoint, Train]) -> SolvedMeshes:
+        """Return what the teeth give in trains that were solved, by operating point."""
+        return cls({load_of(p): (train.meshes, train.planetary) for p, train in solved.items()})
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, SolvedMeshes)
+
+    def __hash__(self) -> int:
+        return 0
+
+
+def load_of(point: OperatingPoint) -> OperatingPoint:
+    """Return an operating point without its name and its part of a duty table."""
+    return point.with_changes(name="", share=None, hours=None)
