@@ -11,6 +11,7 @@ import solidgear as sg
 from solidgear.backlash.solver.stability import over_cycle
 from solidgear.backlash.train import backlash_model, teeth_of
 from solidgear.core import SolidgearError
+from solidgear.datasheet.at_rest import lives_over_points
 from solidgear.strength.acting import Acting
 from solidgear.strength.deflection.at_rest import deflection
 from solidgear.teeth.train_teeth import solved_mesh
@@ -165,6 +166,28 @@ def test_a_point_without_torque_settles_and_has_no_modes(box):
     assert Operating(Assembly(train)).at(idle).mesh_force == 0.0
     with pytest.raises(SolidgearError, match="0 N m presses no teeth together"):
         sg.system_modes(train, BEAMS, max_frequency=1000.0)
+
+
+def test_a_sheet_shows_lives_and_modes_of_its_own_point(box):
+    """Coast is the second point of the file; without a duty table each has its own life."""
+    coast = box.point.with_changes(name="coast", torque=-90.0)
+    train = box.with_changes(operation=(box.point, coast))
+    alone = sg.load_train(train, coast)
+    state = Operating(Assembly(alone)).at(coast)
+    expected = {
+        lives.name: lives.points[0].life.life.reference for lives in lives_in(alone, [[state]])
+    }
+    shown = lives_over_points(train, coast)
+    assert {name: fact.life for name, fact in shown.items()} == pytest.approx(expected, rel=DIGITS)
+    assert not any(fact.over_table for fact in shown.values())
+
+
+def test_a_point_of_a_duty_table_can_be_loaded_for_itself():
+    train = sg.load_train(AXLE.parent / "gearbox_train.toml")
+    coast = train.operation[1]
+    assert coast.share
+    alone = sg.load_train(train, coast)
+    assert alone.point.torque == coast.torque and alone.point.share is None
 
 
 # ------------------------------------------------------------------------------------ backlash

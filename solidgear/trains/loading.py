@@ -60,4 +60,8 @@ def _settled(train: Train, point: OperatingPoint | None, source: Source | Train)
     from solidgear.trains.load.operation import at_point  # start-up: not every file needs it
 
     with explained(source):
-        return at_point(train if point is None else train.with_changes(operation=(point,)))
+        if point is not None:
+            # alone it is no part of a duty table
+            alone = train.told(point).with_changes(share=None, hours=None)
+            train = train.with_changes(operation=(alone,))
+        return at_point(train)

@@ -373,11 +373,17 @@ def at_point(train: Train, word: str | int | None = None) -> Train:
     -30.0
     """
     point = train.operation[0] if word is None and train.operation else named_point(train, word)
+    settled_train = settled_at(train, point)
+    if word is not None:
+        return settled_train
+    settled = settled_train.with_changes(operation=train.operation)
+    return settled.with_solved_meshes(settled_train.solved_meshes)
+
+
+def settled_at(train: Train, point: OperatingPoint) -> Train:
+    """Return a train with bearings settled at an operating point, which is its only one."""
     state = Operating(Assembly(train)).at(point)
-    settled_train = with_settled_bearings(train, state)
-    if word is None:
-        settled_train = settled_train.with_changes(operation=train.operation)
-    return settled_train.with_solved_meshes(state.assembly.teeth.solved)
+    return with_settled_bearings(train, state).with_solved_meshes(state.assembly.teeth.solved)
 
 
 def named_point(train: Train, word: str | int | None) -> OperatingPoint:
