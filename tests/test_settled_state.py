@@ -171,7 +171,8 @@ def test_a_point_without_torque_settles_and_has_no_modes(box):
 def test_a_sheet_shows_lives_and_modes_of_its_own_point(box):
     """Coast is the second point of the file; without a duty table each has its own life."""
     coast = box.point.with_changes(name="coast", torque=-90.0)
-    train = box.with_changes(operation=(box.point, coast))
+    train = box.with_changes(mesh=box.mesh.with_changes(stiffness=9.5e8))
+    train = train.with_changes(operation=(box.point, coast))
     alone = sg.load_train(train, coast)
     state = Operating(Assembly(alone)).at(coast)
     expected = {
