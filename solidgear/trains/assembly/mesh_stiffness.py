@@ -19,7 +19,7 @@ from solidgear.core import SceneError, SolidgearError, addition
 from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
-from solidgear.trains.file.solved_meshes import Meshes, SolvedMeshes, load_of
+from solidgear.trains.file.solved_meshes import SolvedMeshes, load_of
 from solidgear.trains.file.tables import TEETH
 from solidgear.trains.file.train import Train
 
@@ -50,16 +50,13 @@ class TeethAtRest:
         self.train = train
         self._asks = asks_for_teeth(train)
         self._usual = with_usual_meshes(train)
-        self._meshes: dict[tuple[OperatingPoint, str], Meshes] = {
-            (load, repr(AS_STATED)): meshes for load, meshes in train.solved_meshes.by_load.items()
-        }
+        self._meshes = dict(train.solved_meshes.by_condition)
         self._solver: SolvesTeeth | None = None
 
     @property
     def solved(self) -> SolvedMeshes:
-        """The meshes with the bearings as stated, at the points that were solved."""
-        stated = repr(AS_STATED)
-        return SolvedMeshes({p: meshes for (p, c), meshes in self._meshes.items() if c == stated})
+        """The meshes as far as they were solved, for other studies of the same train."""
+        return SolvedMeshes(dict(self._meshes))
 
     def first(self) -> Train:
         """Return the train with numbers for its teeth where it stands: usual ones while bearings have no
@@ -93,7 +90,7 @@ class TeethAtRest:
         load = self.load_that_counts(point)
         if load is None:
             return self._usual
-        key = load, repr(choice)
+        key = load, "" if choice == AS_STATED else repr(choice)
         if key not in self._meshes:
             solved = self._solve(load, choice)
             self._meshes[key] = solved.meshes, solved.planetary

@@ -17,18 +17,20 @@ if TYPE_CHECKING:
 
 #: all meshes of a train, and its planetary stages
 Meshes = tuple[tuple[Mesh, ...], dict[str, Planetary]]
+#: load of an operating point, and the place in the ranges of the bearings as a text, empty as stated
+Condition = tuple[OperatingPoint, str]
 
 
 @dataclass(frozen=True, eq=False)
 class SolvedMeshes:
     """What the teeth of a train give, which follows from the train: all are equal."""
 
-    by_load: Mapping[OperatingPoint, Meshes] = field(default_factory=dict)
+    by_condition: Mapping[Condition, Meshes] = field(default_factory=dict)
 
     @classmethod
     def of(cls, solved: Mapping[OperatingPoint, Train]) -> SolvedMeshes:
         """Return what the teeth give in trains that were solved, by operating point."""
-        return cls({load_of(p): (train.meshes, train.planetary) for p, train in solved.items()})
+        return cls({(load_of(p), ""): (t.meshes, t.planetary) for p, t in solved.items()})
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, SolvedMeshes)
