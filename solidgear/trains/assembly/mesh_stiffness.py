@@ -12,6 +12,7 @@ left is second order in how bearings stiffen as the force moves along the face.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import Protocol
 
 from solidgear.bearings.solved import AS_STATED, Choice
@@ -125,6 +126,11 @@ class TeethAtRest:
                 'can be solved; give a number there, such as "3e8 N/m"'
             )
         return solved
+
+
+def solved_meshes(trains: Mapping[OperatingPoint, Train]) -> SolvedMeshes:
+    """Return what the teeth give in trains that have numbers of them, by operating point."""
+    return SolvedMeshes({(load_of(p), ""): (t.meshes, t.planetary) for p, t in trains.items()})
 
 
 def with_usual_meshes(train: Train) -> Train:

@@ -6,14 +6,10 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING
 
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.planetary import Planetary
 from solidgear.trains.file.tables import Mesh
-
-if TYPE_CHECKING:
-    from solidgear.trains.file.train import Train
 
 #: all meshes of a train, and its planetary stages
 Meshes = tuple[tuple[Mesh, ...], dict[str, Planetary]]
@@ -26,11 +22,6 @@ class SolvedMeshes:
     """What the teeth of a train give, which follows from the train: all are equal."""
 
     by_condition: Mapping[Condition, Meshes] = field(default_factory=dict)
-
-    @classmethod
-    def of(cls, solved: Mapping[OperatingPoint, Train]) -> SolvedMeshes:
-        """Return what the teeth give in trains that were solved, by operating point."""
-        return cls({(load_of(p), ""): (t.meshes, t.planetary) for p, t in solved.items()})
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, SolvedMeshes)

@@ -19,12 +19,11 @@ from solidgear.strength.deflection.misalignment import measured_names, misalignm
 from solidgear.teeth.study import touching
 from solidgear.trains.assembly.assembly import KEPT
 from solidgear.trains.assembly.layout import contacts
-from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth
+from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, solved_meshes
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
 from solidgear.trains.file.flanks import Flanks
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.solved_meshes import SolvedMeshes
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.lives import lives_in
 from solidgear.trains.load.operation import SHAFT, Operating, with_settled_bearings
@@ -215,7 +214,7 @@ class TrainTask(FileTask):
             key = *key, index  # no other row has its mesh stiffness
             points = {point, *duty_points(train)} if BEARING in self.ask else {point}
             solved = {p: self.teeth.solved(key[:-1], train, p) for p in points if p.torque}
-            train = train.with_solved_meshes(SolvedMeshes.of(solved))
+            train = train.with_solved_meshes(solved_meshes(solved))
         at_rest, out = self._settled(key, train, point)
         return at_rest, of_teeth | out
 
