@@ -163,9 +163,10 @@ def test_a_point_without_torque_settles_and_has_no_modes(box):
     """Teeth that carry nothing need no contact; their stiffness would be that of no load."""
     idle = box.point.with_changes(torque=0.0, weight="-z")
     train = box.with_changes(operation=(idle,))
-    assert Operating(Assembly(train)).at(idle).mesh_force == 0.0
+    assembly = Assembly(train)
+    assert Operating(assembly).at(idle).mesh_force == 0.0
     with pytest.raises(SolidgearError, match="0 N m presses no teeth together"):
-        sg.system_modes(train, BEAMS, max_frequency=1000.0)
+        assembly.system("timoshenko")
 
 
 def test_a_sheet_shows_lives_and_modes_of_its_own_point(box):
@@ -181,6 +182,20 @@ def test_a_sheet_shows_lives_and_modes_of_its_own_point(box):
     shown = lives_over_points(train, coast)
     assert {name: fact.life for name, fact in shown.items()} == pytest.approx(expected, rel=DIGITS)
     assert not any(fact.over_table for fact in shown.values())
+
+
+def test_a_train_that_has_changed_settles_anew(box):
+    """In Python as from its file: modes at another torque are on bearings at that torque."""
+    light = box.with_changes(operation=(box.point.with_changes(torque=18.0),))
+    again = sg.load_train(light, light.point)
+    changed, settled = (
+        [mode.frequency_hz for mode in sg.system_modes(train, BEAMS, max_frequency=1500.0).modes]
+        for train in (light, again)
+    )
+    assert changed == pytest.approx(settled, rel=DIGITS, abs=1e-3)
+    before = sg.system_modes(box, BEAMS, max_frequency=1500.0).modes[2].frequency_hz
+    assert changed[2] != pytest.approx(before, rel=1e-3)
+    assert sg.load_train(again) is again
 
 
 def test_a_point_of_a_duty_table_can_be_loaded_for_itself():

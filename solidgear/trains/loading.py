@@ -20,8 +20,8 @@ def load_train(source: Source | Train, point: OperatingPoint | None = None) -> T
     ----------
     source : str, path or dict
         A TOML file; ``geometry/axle_overhung.toml`` describes the format. Or the tables of one, as
-        ``tomllib`` gives them, with names of files relative to the folder of work. A Train is
-        returned as it is, or settled at the point.
+        ``tomllib`` gives them, with names of files relative to the folder of work. A Train that
+        has changed since it was read, or with a point, is settled anew.
     point : OperatingPoint, optional
         Operating point for the bearings, in place of those of the file.
 
@@ -47,12 +47,21 @@ def load_train(source: Source | Train, point: OperatingPoint | None = None) -> T
         return load(file) if alone and point is None else as_written(file)
 
     if isinstance(source, Train):
-        return source if point is None else _settled(source, point, source)
+        changed = source.operation and not source.solved_meshes.with_bearings
+        if point is None and not (changed and _has_catalogued(source)):
+            return source
+        return _settled(source, point, source)
     document = document_of(source)
     train = train_of(document.tables, document.path, scene).read_from(document)
     if point is not None:
         return _settled(train, point, source)
     return _settled(train, None, source).read_from(document) if train.operation else train
+
+
+def _has_catalogued(train: Train) -> bool:
+    """Return whether a bearing of a train has its stiffness at a load."""
+    scenes = (shaft.scene for shaft in train.shafts.values())
+    return any(bearing.catalogue is not None for scene in scenes for bearing in scene.bearings)
 
 
 def _settled(train: Train, point: OperatingPoint | None, source: Source | Train) -> Train:

@@ -1,5 +1,5 @@
 """Meshes of a train with the numbers of their teeth at operating points, which the train keeps so that
-they are solved once: every study of the same train reads them.
+they are solved once: every study of the same train reads them. One that has changed since has none.
 """
 
 from __future__ import annotations
@@ -22,6 +22,8 @@ class SolvedMeshes:
     """What the teeth of a train give, which follows from the train: all are equal."""
 
     by_condition: Mapping[Condition, Meshes] = field(default_factory=dict)
+    #: whether bearings of catalogue data have their stiffness at the operating point of the train
+    with_bearings: bool = False
 
     def __eq__(self, other: object) -> bool:
         return isinstance(other, SolvedMeshes)

@@ -383,7 +383,8 @@ def at_point(train: Train, word: str | int | None = None) -> Train:
 def settled_at(train: Train, point: OperatingPoint) -> Train:
     """Return a train with bearings settled at an operating point, which is its only one."""
     state = Operating(Assembly(train)).at(point)
-    return with_settled_bearings(train, state).with_solved_meshes(state.assembly.teeth.solved)
+    solved = replace(state.assembly.teeth.solved, with_bearings=True)
+    return with_settled_bearings(train, state).with_solved_meshes(solved)
 
 
 def named_point(train: Train, word: str | int | None) -> OperatingPoint:
