@@ -236,10 +236,10 @@ class TeethOfTrain:
     True
     """
 
-    def __init__(self, train: Train, pairs: dict[Any, CylindricalPair] | None = None):
+    def __init__(self, train: Train):
         self.train = train
-        #: wheels whose contact was solved
-        self.pairs: dict[Any, CylindricalPair] = {} if pairs is None else pairs
+        #: wheels whose contact was solved, as of :class:`solidgear.teeth.supports.Carried`
+        self._pairs: dict[Any, CylindricalPair] = {}
         self._assembly: Assembly | None = None
 
     def at(self, point: OperatingPoint, choice: Choice = AS_STATED, varies: str = "") -> Train:
@@ -263,7 +263,7 @@ class TeethOfTrain:
         if self._assembly is None:
             self._assembly = Assembly(with_sections(with_usual_meshes(self.train)))
         operating = Operating(self._assembly, choice=choice)
-        carried = Carried(operating, operating.at(point), self.pairs)
+        carried = Carried(operating, operating.at(point), self._pairs)
         return with_teeth(self.train, carried, varies)
 
 

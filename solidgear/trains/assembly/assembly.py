@@ -506,10 +506,9 @@ class Assembly:
         """Return the same train as it meshes at an operating point: with the numbers of its teeth there,
         at a place in the ranges of its bearings, on the flanks that carry.
         """
-        load = self.teeth.load_that_counts(point)
-        if load is None:
+        if not self.teeth.asked:
             return self.on_flank(point.coast)
-        key = load, repr(choice)
+        key = self.teeth.load_that_counts(point), repr(choice)
         if key not in self._at_points:
             assembly = copy(self)
             assembly.errors = {}

@@ -49,7 +49,7 @@ class TeethAtRest:
 
     def __init__(self, train: Train):
         self.train = train
-        self._asks = asks_for_teeth(train)
+        self.asked = asks_for_teeth(train)
         self._usual = with_usual_meshes(train)
         self._meshes = dict(train.solved_meshes.by_condition)
         self._solver: SolvesTeeth | None = None
@@ -63,7 +63,7 @@ class TeethAtRest:
         """Return the train with numbers for its teeth where it stands: usual ones while bearings have no
         stiffness, and where no torque presses teeth together, with which no motion is computed.
         """
-        if not self._asks or not has_settled(self.train):
+        if not self.asked or not has_settled(self.train):
             return self._usual
         point = self.train.point
         if point is None:
@@ -75,14 +75,14 @@ class TeethAtRest:
 
     def refuse_usual(self, train: Train) -> None:
         """Refuse a train whose teeth have a usual stiffness in place of their own."""
-        if self._asks and train is self._usual:
+        if self.asked and train is self._usual:
             raise SolidgearError(UNLOADED)
 
     def load_that_counts(self, point: OperatingPoint) -> OperatingPoint | None:
         """Return what an operating point has in common with others where the teeth give the same; None
         where only the flank counts.
         """
-        return load_of(self.train.told(point)) if self._asks and point.torque else None
+        return load_of(self.train.told(point)) if self.asked and point.torque else None
 
     def at(self, point: OperatingPoint, choice: Choice = AS_STATED) -> Train:
         """Return the train with the numbers of its teeth at an operating point, at a place in the ranges

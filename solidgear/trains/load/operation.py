@@ -280,7 +280,7 @@ def scene_loads(
             '"replaced", or "added" where it acts besides the teeth',
             path=(*train.shaft_path(side), "scene_load"),
         )
-    flanks = [(assembly.on_flank(p.coast), p) for p in train.operation]
+    flanks = [(assembly.at(p), p) for p in train.operation]
     mesh_loads = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
     mesh_loads.append(_force_on(assembly, side, forces))
     if any(np.linalg.norm(load[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in mesh_loads):
