@@ -86,8 +86,7 @@ ADDITIONS = {
     },
     # numbers of a train that another room computes
     "mesh stiffness": {
-        "teeth": "teeth.train_teeth:mesh_of_teeth",
-        "teeth over points": "teeth.over_points:stiffness_over_points",
+        "teeth": "teeth.train_teeth:TeethOfTrain",
     },
     # what commands print as JSON
     "printed": {

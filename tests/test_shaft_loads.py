@@ -407,7 +407,7 @@ def test_loads_of_a_shaft_in_a_train_act_where_they_are():
     pull = sg.ShaftLoad(name="pull", on="A", x=700.0)
     scene = train.pinion.scene.with_changes(load=None, loads=(pull,))
     shaft = train.shafts["pinion"].with_changes(scene=scene, scene_load="added")
-    assembly = Assembly(train.with_changes(pinion=shaft), solves_teeth=False)
+    assembly = Assembly(train.with_changes(pinion=shaft))
     loads, notes = scene_loads(assembly, "pinion", {}, AT_REST)
     assert {name: six.tolist() for name, six in loads.items()} == {"A": [700.0, 0, 0, 0, 0, 0]}
     assert "is added to the mesh force" in notes[0]

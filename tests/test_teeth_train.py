@@ -13,7 +13,7 @@ from solidgear.show.units import ENGINEERING
 from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.sheet import contact_sheet
 from solidgear.teeth.supports import Carried, with_sections
-from solidgear.teeth.train_teeth import TeethModel, mesh_contact, mesh_of_teeth, teeth_of
+from solidgear.teeth.train_teeth import TeethModel, TeethOfTrain, mesh_contact, teeth_of
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.assembly.stages import mesh_row
@@ -36,7 +36,8 @@ def train():
 @pytest.fixture(scope="module")
 def filled(train):
     """The train with the stiffness and the loaded error of its teeth."""
-    return mesh_of_teeth(train.with_changes(mesh=train.mesh.with_changes(stiffness="teeth")))
+    asked = train.with_changes(mesh=train.mesh.with_changes(stiffness="teeth"))
+    return TeethOfTrain(asked).at(train.point)
 
 
 @pytest.fixture(scope="module")
@@ -234,7 +235,7 @@ def test_over_a_cycle_a_mean_force_gives_the_loaded_error_back(train, filled):
     teeth do.
     """
     asked = train.with_changes(mesh=train.mesh.with_changes(stiffness="teeth"))
-    plain, varying = filled.mesh, mesh_of_teeth(asked, varies="mesh").mesh
+    plain, varying = filled.mesh, TeethOfTrain(asked).at(train.point, varies="mesh").mesh
     assert plain.stiffness_cycle is None
     cycle = varying.stiffness_cycle
     angle = np.array(cycle.angle)[:-1] * train.pinion.teeth
@@ -259,7 +260,7 @@ def test_planets_take_the_stiffness_of_their_teeth():
     mesh = stage.mesh.with_changes(sun_stiffness="teeth", ring_stiffness="teeth")
     planetary = {"stage": stage.with_changes(mesh=mesh)}
     asked = train.with_changes(wheel=wheel).with_changes(planetary=planetary)
-    filled = mesh_of_teeth(asked).planetary["stage"].mesh
+    filled = TeethOfTrain(asked).at(asked.point).planetary["stage"].mesh
     assert filled.status == "calculated"
     # per face width, N/(mm um): teeth of two and of nearly two pairs, a ring's thicker at their feet
     assert 12 < filled.sun_stiffness / 12e-3 / 1e9 < filled.ring_stiffness / 12e-3 / 1e9 < 40
@@ -321,7 +322,7 @@ def test_a_train_without_a_torque_is_refused(train):
         sg.contact(bare, OperatingPoint(torque=0.0))
     mesh = bare.mesh.with_changes(stiffness="teeth")
     with pytest.raises(SceneError, match="under a load"):
-        mesh_of_teeth(bare.with_changes(mesh=mesh))
+        Assembly(bare.with_changes(mesh=mesh))
 
 
 def test_bevel_trains_and_missing_faces_are_refused():

@@ -7,13 +7,14 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
+from solidgear.bearings.solved import AS_STATED
 from solidgear.core import SolidgearError
 from solidgear.core.errors import SceneError
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.registry import _PLACES, addition, register
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.assembly.mesh_stiffness import USUAL, asks_for_teeth
+from solidgear.trains.assembly.mesh_stiffness import USUAL, asks_for_teeth, with_usual_meshes
 from solidgear.trains.file.tooth_fit import fit_cautions, fit_line, path_cuts
 from solidgear.trains.judge.check import _facts
 from solidgear.trains.load.operation import at_point
@@ -28,24 +29,30 @@ STAND_IN = 7.5e8
 solved_at = []
 
 
-def stand_in(train):
-    """Put numbers in the place of "teeth", and remember the torque at which this was asked for."""
-    solved_at.append(train.point.torque if train.point else None)
-    meshes = tuple(
-        m.with_changes(stiffness=STAND_IN, transmission_error=2e-6) if m.stiffness == "teeth" else m
-        for m in train.meshes
-    )
-    return train.with_changes(meshes=meshes)
+class StandIn:
+    """Puts numbers in the place of "teeth", and remembers the torques at which this was asked for."""
+
+    def __init__(self, train):
+        self.train = train
+
+    def at(self, point, choice=AS_STATED, varies=""):
+        solved_at.append(point.torque)
+        numbers = {"stiffness": STAND_IN, "transmission_error": 2e-6}
+        meshes = tuple(
+            m.with_changes(**numbers) if m.stiffness == "teeth" else m for m in self.train.meshes
+        )
+        return self.train.with_changes(meshes=meshes)
 
 
-def unchanged(train):
-    return train
+class Unchanged(StandIn):
+    def at(self, point, choice=AS_STATED, varies=""):
+        return self.train
 
 
 @pytest.fixture
 def solving():
     before = _PLACES.get("mesh stiffness", {}).copy()
-    register("mesh stiffness", "teeth", f"{__name__}:stand_in")
+    register("mesh stiffness", "teeth", f"{__name__}:StandIn")
     solved_at.clear()
     yield solved_at
     _PLACES["mesh stiffness"] = before
@@ -167,9 +174,9 @@ def test_other_words_than_teeth_are_no_stiffness(tmp_path):
 
 def test_an_assembly_solves_the_teeth_at_its_operating_point(tmp_path, solving):
     train = sg.load_train(written(tmp_path, with_teeth()))
-    assert asks_for_teeth(train) and solving == []  # bearings settle with a usual stiffness
+    assert asks_for_teeth(train) and solving == [115.0]  # bearings settle under the solved teeth
     assembly = Assembly(train)
-    assert assembly.contact.stiffness == STAND_IN and solving == [115.0]
+    assert assembly.contact.stiffness == STAND_IN and solving == [115.0]  # once for all
     assert assembly.train.mesh.transmission_error.orders == (2e-6,)
     assert assembly.asked_train.mesh.stiffness == "teeth"
     Assembly(at_point(train, "coast"))
@@ -187,32 +194,27 @@ def test_the_same_numbers_typed_make_the_same_train(tmp_path, solving):
 def test_without_anyone_to_solve_teeth_a_number_is_asked_for(tmp_path, solving):
     _PLACES["mesh stiffness"].clear()
     addition.cache_clear()
-    train = sg.load_train(written(tmp_path, with_teeth()))
     with pytest.raises(SolidgearError, match="room of teeth"):
-        Assembly(train)
+        sg.load_train(written(tmp_path, with_teeth()))
 
 
 def test_a_mesh_that_stays_without_a_number_is_refused(tmp_path, solving):
-    register("mesh stiffness", "teeth", f"{__name__}:unchanged")
-    train = sg.load_train(written(tmp_path, with_teeth()))
+    register("mesh stiffness", "teeth", f"{__name__}:Unchanged")
     with pytest.raises(SolidgearError, match="give a number there"):
-        Assembly(train)
+        sg.load_train(written(tmp_path, with_teeth()))
 
 
-def test_check_solves_nothing_and_says_what_it_takes(tmp_path, solving):
+def test_check_says_that_the_teeth_give_the_stiffness(tmp_path, solving):
     train = sg.load_train(written(tmp_path, with_teeth(with_lines('crowning = "5 um"'))))
-    assembly = Assembly(train, solves_teeth=False)
-    assert assembly.contact.stiffness == pytest.approx(USUAL * 50e-3)
-    facts = " ".join(_facts(assembly, 4000.0))
+    facts = " ".join(_facts(Assembly(train), 4000.0))
     for words in (
-        "1e+09 N/m",
-        "20 N/(mm um)",
+        "7.5e+08 N/m",
+        'the teeth give this stiffness (stiffness = "teeth") at full (115 N m',
         "contact ratio 1.589",
         "assumed of the teeth: normal",
     ):
         assert words in facts
     assert "flanks of the gear without modification" in facts
-    assert solving == []
 
 
 def test_planets_ask_for_their_teeth_as_well():
@@ -231,7 +233,7 @@ def test_planets_ask_for_their_teeth_as_well():
     assert asks_for_teeth(asking)
     with pytest.raises(SolidgearError, match="not solved yet"):
         asking.stages[0].stiffness("sun")
-    taken = Assembly(asking, solves_teeth=False).train.planetary[stage.called].mesh
+    taken = with_usual_meshes(asking).planetary[stage.called].mesh
     assert taken.sun_stiffness == pytest.approx(USUAL * 30e-3)
     assert taken.ring_stiffness == mesh.ring_stiffness
 

@@ -20,7 +20,7 @@ from typing import Any
 import numpy as np
 
 import solidgear as sg
-from solidgear.teeth.train_teeth import mesh_of_teeth
+from solidgear.teeth.train_teeth import TeethOfTrain
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.response.drive import Drive
 from validation.common import kept, read_result
@@ -116,7 +116,8 @@ def dynamic_orders(case: Case) -> tuple[np.ndarray, float]:
     both wheels on the teeth, Hz.
     """
     with tempfile.TemporaryDirectory() as name:
-        train = mesh_of_teeth(train_of(case, Path(name)))
+        asked = train_of(case, Path(name))
+        train = TeethOfTrain(asked).at(asked.point)
         drive = Drive(Assembly(train), "timoshenko", "timoshenko")
         wheels = case.wheels.first, case.wheels.second
         lightness = sum(w.base**2 / inertia for w, inertia in zip(wheels, INERTIAS))

@@ -13,9 +13,9 @@ from solidgear.backlash.study import BacklashStudy
 from solidgear.core import SceneError, Sheeted, SolidgearError, Source, show
 from solidgear.core.scene.units import quantity
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.assembly.mesh_stiffness import with_solved_meshes
 from solidgear.trains.assembly.slips import unit_slips
 from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.tables import TEETH
 from solidgear.trains.file.train import Train, named_pair
 from solidgear.trains.options import Models, Reducing, Settings, assembled
 from solidgear.trains.options import mix as read_mix
@@ -118,7 +118,7 @@ def nonlinear(
     assembly, first = assembled(train, models, settings, reduced)
     driver = named_pair(assembly.train, mesh)
     # nonlinear motion sees the stiffness of its own teeth vary
-    assembly = assembly.with_train(with_solved_meshes(assembly.asked_train, driver.name))
+    assembly = _over_cycle(assembly, driver)
     further_mixes = _usual(assembly)
     if against is not None:
         further_mixes = [
@@ -154,6 +154,14 @@ def nonlinear(
         cautions.append("teeth of planets are springs that never part")
     cautions += _beside_torque(assembly, mean_force)
     return Nonlinear(assembly, result, tuple(cautions))
+
+
+def _over_cycle(assembly: Assembly, driver: Pair) -> Assembly:
+    """Return the same train with the stiffness of the driven teeth over their cycle, where they give it."""
+    asked = assembly.asked_train
+    if asked.point is None or named_pair(asked, driver.name).mesh.stiffness != TEETH:
+        return assembly
+    return assembly.with_train(assembly.teeth.over_cycle(asked.point, driver.name))
 
 
 def _beside_torque(assembly: Assembly, mean_force: Quantity) -> list[str]:

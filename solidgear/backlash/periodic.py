@@ -11,7 +11,7 @@ import numpy as np
 
 from solidgear.backlash.solver.apart import Search
 from solidgear.backlash.solver.balance import Balance
-from solidgear.backlash.solver.continuation import Branch, Point
+from solidgear.backlash.solver.continuation import TAIL, Branch, Point
 from solidgear.backlash.solver.model import Remainder
 from solidgear.backlash.solver.motion import departure
 from solidgear.backlash.solver.stability import ON
@@ -52,6 +52,13 @@ class Teeth:
         """Transmission error by orders, ``Re(e exp(i n x angle))``, m."""
         phases = self.phases or (0.0,) * len(self.errors)
         return tuple(complex(e * np.exp(1j * p)) for e, p in zip(self.errors, phases))
+
+    @property
+    def highest_order(self) -> int:
+        """The highest order of the mesh that excites it, of those that motions are followed to."""
+        sizes = [np.abs(self.errors), np.hypot(*np.reshape(self.cycle, (-1, 2)).T)]
+        orders = [np.flatnonzero(size > TAIL * size.max(initial=0.0)) + 1 for size in sizes]
+        return int(np.concatenate([[1], *orders]).max())
 
     @property
     def varies(self) -> bool:
@@ -109,6 +116,9 @@ class Backlash:
     branch: Branch = field(repr=False)  #: in order; more than one point may lie at one frequency
     multiplier: np.ndarray = field(repr=False)
     seconds: float  #: processor time, of the branch and its stability
+    #: orders of the mesh reach it, and modes from the second on are springs, Hz; None where orders meet
+    #: all modes that they reach
+    unmet_hz: tuple[float, float] | None = None
     #: number of the law whose mesh is described: 0 for the mesh whose transmission error drives the train
     law: int = 0
     periods: int = 1  #: of the driven mesh after which motions repeat themselves

@@ -20,6 +20,10 @@ from solidgear.trains.file.train import Train
 #: a frequency, or several
 Frequency = TypeVar("Frequency", float, np.ndarray)
 CALM = "The teeth keep contact in all of the range: the linear answer holds to the last digit."
+UNMET = (
+    "Orders of the mesh reach {0:.0f} Hz, but the shafts resolve modes up to {1:.0f} Hz only: those "
+    "above act as springs, and what orders do to them is left out; keep more modes (--kept)."
+)
 #: of motions that repeat themselves otherwise than every mesh period
 WANDERS = "From {0} the periodic motion is unstable: {1} comes in, and a sweep may leave it there."
 PHASES = (
@@ -101,6 +105,9 @@ class BacklashStudy:
         """Return sentences on the first mix, and on which of the others is enough."""
         judge, teeth = self.judge, self.teeth
         compared = [*self._run_lines(), *self._verdict()]
+        if judge.unmet_hz is not None:
+            reached, resolved = judge.unmet_hz
+            compared.append(UNMET.format(reached, resolved))
         parts = any(mesh.lost for mesh in judge.meshes)
         if not parts and not teeth.varies and not judge.branches_apart:
             return [CALM, *self._search_lines(), *compared]

@@ -41,7 +41,7 @@ from solidgear.trains.file.planetary import error_of
 from solidgear.trains.file.train import Train, named_pair
 from solidgear.trains.load.contact import LEVER_REFUSED, axes_of
 from solidgear.trains.load.operation import SHAFT, loop_forces, rotor_loads
-from solidgear.trains.modes.modes import refuse_unresolved
+from solidgear.trains.modes.modes import refuse_unresolved, resolved_frequency
 
 #: the first frequency of a branch by default, over the highest
 BEGIN = 0.01
@@ -165,10 +165,15 @@ def parting(system: System, teeth: Teeth, loss: float = 0.0) -> System:
 
 
 def backlash_model(
-    assembly: Assembly, models: Sequence[str], teeth: Teeth, highest_hz: float
+    assembly: Assembly,
+    models: Sequence[str],
+    teeth: Teeth,
+    highest_hz: float,
+    reached_hz: float = 0.0,
 ) -> Remainder:
     """Return the remainder of a train with backlash, by models of the shafts; modes above the
-    highest frequency give way like springs.
+    highest frequency give way like springs, but for those that orders of the mesh reach and the
+    shafts resolve.
     """
     pair, loss, damped = named_pair(assembly.train, teeth.mesh), assembly.loss_factors(), 0.0
     if teeth.contact_loss_hz:
@@ -196,7 +201,7 @@ def backlash_model(
         errors={name: teeth.harmonics},
         cycles={name: [complex(c, -s) for c, s in teeth.cycle]},
         sways=sways,
-        highest_hz=highest_hz,
+        highest_hz=max(highest_hz, min(reached_hz, resolved_frequency(assembly, system))),
     )
 
 
@@ -271,7 +276,9 @@ def with_backlash(
     begin = process_time()
     most = max(assembly.train.ask.max_frequency, highest)
     mix = assembly.models_by_shaft(models)
-    model = backlash_model(assembly, models, teeth, most)
+    reached = highest * _highest_order(assembly, teeth)
+    model = backlash_model(assembly, models, teeth, most, reached)
+    resolved = max(most, resolved_frequency(assembly, assembly.system(*models)))
     label = " + ".join(mix.values())
     progress(f"branch of {label}")
     branch = follow(model, 2 * np.pi * lowest, 2 * np.pi * highest, step=STEP)
@@ -282,12 +289,19 @@ def with_backlash(
         branch=branch,
         multiplier=largest_multipliers(branch),
         seconds=process_time() - begin,
+        unmet_hz=(reached, resolved) if reached > resolved else None,
     )
     if not search_speeds:
         return backlash
     progress(f"separate branches of {label}")
     with_branches = search_branches(backlash, search_speeds, STEP)
     return replace(with_branches, seconds=process_time() - begin)
+
+
+def _highest_order(assembly: Assembly, teeth: Teeth) -> int:
+    """Return the highest order of the driven mesh that excites it."""
+    turns = CYCLE_ORDERS if teeth.turns else 1
+    return max(teeth.highest_order, turns)
 
 
 def search_branches(backlash: Backlash, count: int, step: float) -> Backlash:

@@ -27,6 +27,7 @@ from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.deflection.shaft import BearingState
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
 from solidgear.strength.stress.shaft import Notch
+from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.lives import train_lives
 
@@ -85,9 +86,9 @@ def forces_alone(deflected: Deflections) -> tuple[Force, ...]:
     return tuple(sorted(loads, key=lambda force: force.y))
 
 
-def lives_over_points(train: Train) -> dict[str, BearingFact]:
-    """Return lives of the catalogue bearings of a train, or of a shaft over its cases, with the duty
-    table where there is one; empty without such bearings.
+def lives_over_points(train: Train, point: OperatingPoint | None = None) -> dict[str, BearingFact]:
+    """Return lives of the catalogue bearings of a train at an operating point, by default the first, or
+    of a shaft over its cases, over the duty table where there is one; empty without such bearings.
     """
     bearings = {
         bearing.name if train.is_one_shaft else f"{side}.{bearing.name}": bearing
@@ -98,11 +99,18 @@ def lives_over_points(train: Train) -> dict[str, BearingFact]:
         return {}
     out = {}
     for lives in train_lives(train):
-        fact = life_fact(lives.name, bearings[lives.name], lives.points[0].life)
+        first = lives.points[0]
+        shown = next((p for p in lives.points if point and p.label == point.label), first)
+        fact = life_fact(lives.name, bearings[lives.name], shown.life)
         duty = lives.duty
         if duty is not None and len(lives.points) > 1:
             fact = replace(
-                fact, kind=lives.kind, life=duty.revolutions, hours=duty.hours, open=None
+                fact,
+                kind=lives.kind,
+                life=duty.revolutions,
+                hours=duty.hours,
+                open=None,
+                over_table=True,
             )
         out[lives.name] = fact
     return out
@@ -190,6 +198,7 @@ def _with_load(
         open=life.open if life else None,
         hours=life.hours if life else None,
         static_safety=state.static_safety,
+        over_table=bool(life and life.over_table),
     )
 
 

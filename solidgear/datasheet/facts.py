@@ -153,6 +153,7 @@ class BearingFact:
     open: Range = None  #: revolutions
     hours: float | None = None  #: at the speed, or over the duty table
     static_safety: float | None = None
+    over_table: bool = False  #: its life is that over a duty table, whatever the point of the load
 
 
 @dataclass(frozen=True)

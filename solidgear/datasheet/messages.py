@@ -82,6 +82,10 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Life: basic reference life by ISO/TS 16281, 90 % reliability.",
         "Lebensdauer: nominelle Referenz-Lebensdauer nach ISO/TS 16281, 90 % Zuverlässigkeit.",
     ),
+    "note table": (
+        "Lives over the duty table, loads at the operating point.",
+        "Lebensdauern über das Lastkollektiv, Lasten im Betriebspunkt.",
+    ),
     "note no life": (
         "No lives: no bearing has catalogue data.",
         "Keine Lebensdauern: kein Lager hat Katalogdaten.",

@@ -287,6 +287,7 @@ def _bearings(facts: Facts, words: Language) -> Section:
         rows.append(row)
     kinds = {b.kind for b in facts.bearings if b.kind}
     notes = [words.say(f"note {kind}") for kind in sorted(kinds)]
+    notes += [words.say("note table")] if any(b.over_table for b in facts.bearings) else []
     notes += [words.say("note range")] if ranged else []
     notes += [words.say("note static" if lived else "note no life")]
     more = _more(len(facts.bearings), MOST_ROWS, words)

@@ -99,5 +99,5 @@ def _of_train(
     train = load_train(source)
     if not train.operation and acting.torque is None:
         return train_sheet(train, None, None, settings, progress)
-    train, at = acting.read_train(source)
+    train, at = acting.read_train(train)
     return train_sheet(train, Assembly(train, tol=tol), at, settings, progress)

@@ -41,7 +41,7 @@ from solidgear.trains.assembly.kinematics import train_orders
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
-from solidgear.trains.load.operation import at_point
+from solidgear.trains.load.operation import settled_at
 from solidgear.trains.modes.modes import TrainMode, train_modes
 
 Progress = Callable[[str], None]
@@ -60,7 +60,9 @@ def train_sheet(
 ) -> Datasheet:
     """Return the sheet of a train, at an operating point where it has one."""
     progress("natural frequencies")
-    modes = train_modes(Assembly(at_point(train) if point else train), JUDGE, at_most=MODES)
+    modes = train_modes(
+        Assembly(settled_at(train, point) if point else train), JUDGE, at_most=MODES
+    )
     frequencies = tuple(map(_frequency, (mode for mode in modes.modes if mode.frequency_hz > 0)))
     speed = None if point is None else point.speed_of(train.reference, train.turns)
     drawn = tuple(DrawnShaft(side, shaft.scene.as_dict()) for side, shaft in train.shafts.items())
@@ -105,6 +107,7 @@ def _at_point(
     stressed = stress_at_rest(assembly, point, asked=settings)
     notch = worst_notch(stressed)
     shafts = {shaft.name: shaft for shaft in stressed.shafts}
+    solved = train.with_solved_meshes(assembly.teeth.solved)
     weight = [Remark("assumed weight")] if point.weight else []
     drawn = tuple(
         replace(
@@ -124,7 +127,7 @@ def _at_point(
         notch=notch,
         section=worst_section(stressed),
         absent=sheet.absent | absent_notch(stressed, notch),
-        bearings=bearing_facts(deflected, assembly.scenes, lives_over_points(train)),
+        bearings=bearing_facts(deflected, assembly.scenes, lives_over_points(solved, point)),
         motions=motions(deflected),
         assumed=(*sheet.assumed, *weight, *assumed_at_rest(stressed, notch)),
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),

@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from solidgear.bearings.solved import AS_STATED, Choice
 from solidgear.core import Scene, SceneError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
@@ -25,7 +26,8 @@ from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
 from solidgear.teeth.supports import Carried, with_sections
-from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, with_usual_meshes
+from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.mesh_cycle import StiffnessCycle
 from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
@@ -35,6 +37,7 @@ from solidgear.trains.file.tables import TEETH, ErrorTable, Mesh
 from solidgear.trains.file.tip_rules import tip_problems
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of, other_flank
+from solidgear.trains.load.operation import Operating
 
 #: bore below which a wheel is solid, of its root radius
 THINNEST = HUB
@@ -217,27 +220,51 @@ def solved_mesh(
     return mesh_contact(carried, mesh, model)
 
 
-def mesh_of_teeth(train: Train, varies: str = "") -> Train:
-    """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth at the
-    first operating point: tangent stiffness, and of pairs mesh point, line of action and the orders of
-    the loaded transmission error.
+class TeethOfTrain:
+    """Teeth of a train whose meshes with ``stiffness = "teeth"`` are to have numbers.
 
-    Parameters
-    ----------
-    train : Train
-    varies : str
-        Name of a pair whose stiffness is to vary over its mesh cycle, for nonlinear motion; its
-        transmission error is then what is left of the loaded one.
+    Shafts are reduced once and wheels solved once for all operating points and bearings.
 
-    Raises
-    ------
-    SceneError
-        For teeth that the file does not describe, and a train without an operating point.
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> train = sg.load_train("geometry/gearbox_train.toml")
+    >>> mesh = train.meshes[0].with_changes(stiffness="teeth")
+    >>> teeth = TeethOfTrain(train.with_changes(meshes=(mesh,)))
+    >>> full, coast = (teeth.at(point).meshes[0].stiffness for point in train.operation)
+    >>> 2e9 > full > coast > 5e8
+    True
     """
-    if not asks_for_teeth(train):
-        return train
-    carried = Carried.at_rest(with_sections(with_usual_meshes(train)), _point(train))
-    return with_teeth(train, carried, varies)
+
+    def __init__(self, train: Train):
+        self.train = train
+        #: wheels whose contact was solved, as of :class:`solidgear.teeth.supports.Carried`
+        self._pairs: dict[Any, CylindricalPair] = {}
+        self._assembly: Assembly | None = None
+
+    def at(self, point: OperatingPoint, choice: Choice = AS_STATED, varies: str = "") -> Train:
+        """Return the train with the numbers of its teeth at an operating point, at a place in the ranges
+        of its bearings: tangent stiffness, and of pairs mesh point, line of action and the orders of
+        the loaded transmission error.
+
+        Parameters
+        ----------
+        point : OperatingPoint
+        choice : Choice
+        varies : str
+            Name of a pair whose stiffness is to vary over its mesh cycle, for nonlinear motion; its
+            transmission error is then what is left of the loaded one.
+
+        Raises
+        ------
+        SolidgearError
+            For teeth that the file does not describe, and a point without a torque.
+        """
+        if self._assembly is None:
+            self._assembly = Assembly(with_sections(with_usual_meshes(self.train)))
+        operating = Operating(self._assembly, choice=choice)
+        carried = Carried(operating, operating.at(point), self._pairs)
+        return with_teeth(self.train, carried, varies)
 
 
 def with_teeth(train: Train, carried: Carried, varies: str = "") -> Train:
@@ -279,15 +306,6 @@ def _orders(error: np.ndarray) -> ErrorTable:
     return ErrorTable(
         orders=tuple(np.abs(orders).tolist()), phases=tuple(np.angle(orders).tolist())
     )
-
-
-def _point(train: Train) -> OperatingPoint:
-    if train.point is None:
-        raise SceneError(
-            'is missing; stiffness = "teeth" is that under a load: give [operation] a torque',
-            path=("operation",),
-        )
-    return train.point
 
 
 def _filled(carried: Carried, pair: Pair, mesh: Mesh, varies: bool) -> Mesh:

@@ -20,8 +20,8 @@ def load_train(source: Source | Train, point: OperatingPoint | None = None) -> T
     ----------
     source : str, path or dict
         A TOML file; ``geometry/axle_overhung.toml`` describes the format. Or the tables of one, as
-        ``tomllib`` gives them, with names of files relative to the folder of work. A Train is
-        returned as it is, or settled at the point.
+        ``tomllib`` gives them, with names of files relative to the folder of work. A Train that
+        has changed since it was read, or with a point, is settled anew.
     point : OperatingPoint, optional
         Operating point for the bearings, in place of those of the file.
 
@@ -47,7 +47,10 @@ def load_train(source: Source | Train, point: OperatingPoint | None = None) -> T
         return load(file) if alone and point is None else as_written(file)
 
     if isinstance(source, Train):
-        return source if point is None else _settled(source, point, source)
+        changed = source.operation and not source.solved_meshes.with_bearings
+        if point is None and not (changed and _has_catalogued(source)):
+            return source
+        return _settled(source, point, source)
     document = document_of(source)
     train = train_of(document.tables, document.path, scene).read_from(document)
     if point is not None:
@@ -55,9 +58,19 @@ def load_train(source: Source | Train, point: OperatingPoint | None = None) -> T
     return _settled(train, None, source).read_from(document) if train.operation else train
 
 
+def _has_catalogued(train: Train) -> bool:
+    """Return whether a bearing of a train has its stiffness at a load."""
+    scenes = (shaft.scene for shaft in train.shafts.values())
+    return any(bearing.catalogue is not None for scene in scenes for bearing in scene.bearings)
+
+
 def _settled(train: Train, point: OperatingPoint | None, source: Source | Train) -> Train:
     """Return a train whose bearings have settled at a point, in place of those that it has."""
     from solidgear.trains.load.operation import at_point  # start-up: not every file needs it
 
     with explained(source):
-        return at_point(train if point is None else train.with_changes(operation=(point,)))
+        if point is not None:
+            # alone it is no part of a duty table
+            alone = train.told(point).with_changes(share=None, hours=None)
+            train = train.with_changes(operation=(alone,))
+        return at_point(train)

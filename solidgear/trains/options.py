@@ -138,7 +138,6 @@ class Reduced(Reduction):
         self,
         source: Source | Train,
         settings: Mapping[str | tuple[str, str], Mapping] | None = None,
-        solves_teeth: bool = True,
     ) -> Assembly:
         """Return the assembly of a train, once these options are sound, with builder options by
         side and model.
@@ -149,9 +148,10 @@ class Reduced(Reduction):
             loaded = at_point(loaded, self.point)
         if self.harmonics:
             extra = {"local_harmonics": self.harmonics}
+            solved = loaded.solved_meshes
             loaded = loaded.with_changes(
                 meshes=tuple(m.with_changes(**extra) for m in loaded.meshes)
-            )
+            ).with_solved_meshes(solved)
         try:
             return Assembly(
                 loaded,
@@ -160,7 +160,6 @@ class Reduced(Reduction):
                 settings or {},
                 tol=self.tol,
                 highest_hz=self.max_frequency,
-                solves_teeth=solves_teeth,
             )
         except SceneError as error:  # what the mesh of a sound file cannot be
             document = document_of(source)

@@ -158,12 +158,20 @@ class Remainder:
         return out
 
     @cached_property
-    def _poles(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return poles (2r,), rad/s, and residues (2r, m, m) of the receptance."""
+    def modes(self) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return poles (2r,), rad/s, their shapes (2r, 2r) in the state, what the rows (m,) push in them
+        (2r, m), and stretches and rates of the rows by them (2, m, 2r).
+        """
         value, right = np.linalg.eig(self.state)
         r = len(self.omega)
         inputs = np.linalg.solve(right, np.vstack([np.zeros((r, self.rows)), self.shapes.T]))
-        out = (self.shapes / self.omega) @ right[:r]
+        outputs = np.stack([(self.shapes / self.omega) @ right[:r], self.shapes @ right[r:]])
+        return value, right, inputs, outputs
+
+    @cached_property
+    def _poles(self) -> tuple[np.ndarray, np.ndarray]:
+        """Return poles (2r,), rad/s, and residues (2r, m, m) of the receptance."""
+        value, _, inputs, (out, _) = self.modes
         return value, out.T[:, :, None] * inputs[:, None, :]
 
     def receptance(self, omega: np.ndarray) -> tuple[np.ndarray, np.ndarray]:

@@ -118,10 +118,18 @@ def over_cycle(
     """Return the monodromy (2r, 2r) by the midpoint rule, from the tangents of the excess (T, m, m)
     at equal intervals of a period.
     """
-    step = 2 * np.pi / omega / len(by_stretch)
-    half = step / 2 * remainder.generator(by_stretch, by_rate)
-    eye = np.eye(half.shape[-1])
-    out = eye
-    for transition in np.linalg.solve(eye - half, eye + half):
-        out = transition @ out
-    return out
+    half = np.pi / omega / len(by_stretch)
+    # among the poles of the laws' tangents a step is diagonal but for the few rows of the excess
+    poles, right, inputs, outputs = remainder.modes
+    still = np.linalg.inv(np.eye(remainder.rows) - remainder.flexible @ by_stretch)
+    excess = np.stack([by_stretch @ still, by_rate @ still], axis=1)
+    rows = np.einsum("tkab,kbn->tan", excess, outputs)
+    near = 1 / (1 - half * poles)
+    pushed = half * near[:, None] * inputs
+    cores = np.linalg.inv(np.eye(remainder.rows) - rows @ pushed)
+    out = np.eye(len(poles), dtype=complex)
+    for row, core in zip(rows, cores):
+        middle = near[:, None] * out
+        middle += pushed @ (core @ (row @ middle))
+        out = 2 * middle - out
+    return (right @ out @ np.linalg.inv(right)).real

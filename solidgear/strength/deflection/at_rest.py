@@ -294,7 +294,7 @@ def deflect(
     if every:
         progress(f"{len(train.operation)} operating points")
         points = deflections(assembly, train.operation, models[-1])
-    contacts = assembly.on_flank(point.coast).contacts
+    contacts = assembly.at(point).contacts
     return Deflections(
         title=train.title or train.name,
         tolerance=train.ask.tolerance,
@@ -385,8 +385,7 @@ def _solution(
         )
         for side, model in by_shaft.items()
     )
-    on_flank = assembly.on_flank(state.point.coast)
-    askew = measured(misalignment(on_flank, system))
+    askew = measured(misalignment(state.assembly, system))
     skews = {m.name: (m.value, m.bar) for m in askew}
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     if housed:
@@ -415,7 +414,7 @@ def _solution(
         seconds=seconds,
         mounts=mounts,
         turns=over_a_turn(assembly, state, by_shaft),
-        face_loads=face_loads(on_flank, system, state.coordinates, skews),
+        face_loads=face_loads(state.assembly, system, state.coordinates, skews),
         statics=_statics(assembly, load, shafts),
         lumped=() if load is None else tuple(p.name for p in assembly.scenes[ALONE].ports),
         still=_still(assembly, load),
@@ -483,7 +482,7 @@ def with_ranges(assembly: Assembly, solution: Deflection) -> Deflection:
         operating = Operating(assembly, *solution.models.values(), choice=choice)
         state = operating.at(solution.point)
         if solution.load is None:
-            measures = misalignment(assembly.on_flank(solution.point.coast), state.system)
+            measures = misalignment(state.assembly, state.system)
             return np.array([float(m.row @ state.coordinates) for m in measures])
         return np.array(state.motion(f"{ALONE}.{solution.load.port}"))
 

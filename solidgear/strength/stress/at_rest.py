@@ -165,9 +165,10 @@ def stress_at_rest(
     progress(model)
     rounded = {
         side: shaft.with_changes(scene=filleted(shaft.scene))
-        for side, shaft in assembly.train.shafts.items()
+        for side, shaft in assembly.asked_train.shafts.items()
     }
-    train = assembly.train.with_changes(shafts=rounded)
+    train = assembly.asked_train.with_changes(shafts=rounded)
+    train = train.with_solved_meshes(assembly.teeth.solved)
     settling = replace(assembly, train=train).settling(model)
     usual = Operating(settling, model).at(point)
 

@@ -9,7 +9,7 @@ A further model of one shaft is added by ``add_part`` or ``add_model``; of all s
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from copy import copy
 from dataclasses import dataclass, field, replace
 from time import perf_counter
@@ -17,6 +17,7 @@ from time import perf_counter
 import numpy as np
 from numpy.typing import ArrayLike
 
+from solidgear.bearings.solved import AS_STATED, Choice
 from solidgear.core import (
     LADDER,
     Body,
@@ -60,7 +61,7 @@ from solidgear.trains.assembly.mesh_errors import (
     refine_meshes,
     resolving,
 )
-from solidgear.trains.assembly.mesh_stiffness import with_solved_meshes, with_usual_meshes
+from solidgear.trains.assembly.mesh_stiffness import TeethAtRest
 from solidgear.trains.assembly.shaft import (
     JUDGE,
     LUMPED,
@@ -73,6 +74,7 @@ from solidgear.trains.assembly.shaft import (
 from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
 from solidgear.trains.file.housing import HOUSING
+from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import Contact
@@ -105,8 +107,6 @@ class Assembly:
     #: file over the share of it that a judge may take
     tol: float | str | None = None
     highest_hz: float | None = None  #: up to which modes are wanted; by default that of the file
-    #: false to leave the contact of teeth alone that are to give the stiffness of their mesh
-    solves_teeth: bool = True
 
     @classmethod
     def of(cls, scene: Scene, kept: int = KEPT, tol: float | str | None = None) -> Assembly:
@@ -140,19 +140,24 @@ class Assembly:
         self._read_train(self.train)
 
     def _read_train(self, train: Train) -> None:
-        self.asked_train = train  #: before the stiffness of teeth was put in
-        train = with_solved_meshes(train) if self.solves_teeth else with_usual_meshes(train)
-        self.train = train
+        self.asked_train = train  #: before the numbers of its teeth were put in
+        self.teeth = TeethAtRest(train)  #: what they give at operating points
+        #: the train at operating points and places in the ranges of its bearings, where its teeth differ
+        self._at_points: dict[Hashable, Assembly] = {}
         self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
-        self.contacts: dict[str, Contact] = contacts(train)
-        self.places = places(train, self.contacts, self.scenes)
-        self.stages: dict[str, StageAtWork] = stages_at_work(
-            train, self.contacts, self.scenes, self.places
-        )
-        point = train.point
-        self._flanks: dict[bool, Assembly] = {point is not None and point.coast: self}
         #: trains without cuts, by the model that settles them: built once for all ends of open data
         self._plain: dict[str, Assembly] = {}
+        self._mesh(self.teeth.first(), train.point is not None and train.point.coast)
+
+    def _mesh(self, train: Train, coast: bool) -> None:
+        """Read a train whose meshes have numbers, on the flanks that carry."""
+        self.train = train
+        self.contacts: dict[str, Contact] = contacts(train, coast)
+        self.places = places(train, self.contacts, self.scenes)
+        self.stages: dict[str, StageAtWork] = stages_at_work(
+            train, self.contacts, self.scenes, self.places, coast
+        )
+        self._flanks: dict[bool, Assembly] = {coast: self}
 
     @property
     def tolerance(self) -> float:
@@ -491,8 +496,25 @@ class Assembly:
             for side, shaft in train.shafts.items()
         }
         meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
-        self._plain[model] = replace(self, train=train.with_changes(shafts=shafts, meshes=meshes))
+        plain = train.with_changes(shafts=shafts, meshes=meshes)
+        # contact is solved on the plain shafts in any case
+        plain = plain.with_solved_meshes(self.teeth.solved)
+        self._plain[model] = replace(self, train=plain)
         return self._plain[model]
+
+    def at(self, point: OperatingPoint, choice: Choice = AS_STATED) -> Assembly:
+        """Return the same train as it meshes at an operating point: with the numbers of its teeth there,
+        at a place in the ranges of its bearings, on the flanks that carry.
+        """
+        if not self.teeth.asked:
+            return self.on_flank(point.coast)
+        key = self.teeth.load_that_counts(point), repr(choice)
+        if key not in self._at_points:
+            assembly = copy(self)
+            assembly.errors = {}
+            assembly._mesh(self.teeth.at(point, choice), point.coast)
+            self._at_points[key] = assembly
+        return self._at_points[key]
 
     def on_flank(self, coast: bool) -> Assembly:
         """Return the same train with the teeth in contact on one flank: `coast` is True for that
@@ -551,6 +573,8 @@ class Assembly:
         teeth drive.
         """
         train = self.train
+        if bearings:
+            self.teeth.refuse_usual(train)
         rotors = {name: Inertia(rotor.inertia) for name, rotor in train.rotors.items()}
         parts: dict[str, Part] = {name: rotors[name] for name in train.engines}
         for side, model in models.items():

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from solidgear.core import addition
 from solidgear.show.units import Units
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
@@ -45,13 +44,10 @@ def tooth_stiffness(assembly: Assembly, everywhere: bool = True) -> tuple[ToothS
     train, of_train = assembly.asked_train, _of_train(assembly)
     if not of_train:
         return ()
-    over_points = addition("mesh stiffness", "teeth over points")
-    several = everywhere and len(train.operation) > 1
-    further = over_points(train) if over_points and several else {}
+    further = [_of_train(assembly.at(point)) for point in train.operation[1:] if everywhere]
     meshes = []
     for name, (stiffness, status) in of_train.items():
-        # that of the train was solved already
-        values = (stiffness, *further.get(name, ())[1:])
+        values = (stiffness, *(at_point[name][0] for at_point in further))
         meshes.append(ToothStiffness(name, train.operation[: len(values)], values, status))
     return tuple(meshes)
 

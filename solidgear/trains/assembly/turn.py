@@ -104,12 +104,12 @@ def over_a_turn(
     """Return the mesh forces of all planetary stages that carry torque, over a turn of the carrier;
     bearings keep their stiffness at the state, which is that of these models.
     """
-    flank = assembly.on_flank(state.point.coast)
-    stages = [flank.stages[stage.name] for stage in stages_over_a_turn(assembly.train)]
+    meshing = state.assembly
+    stages = [meshing.stages[stage.name] for stage in stages_over_a_turn(assembly.train)]
     carrying = [stage for stage in stages if state.mesh_forces[stage.stage.name]]
     if not carrying:
         return ()
-    train_system = assembly.with_train(with_settled_bearings(assembly.train, state)).system(
+    train_system = assembly.with_train(with_settled_bearings(meshing.train, state)).system(
         *models.values()
     )
     out = []

@@ -45,6 +45,7 @@ from solidgear.trains.file.power import carried_of, flows_of, share_problems
 from solidgear.trains.file.rules import housing_problems
 from solidgear.trains.file.running_rules import running_problems, spring_problems
 from solidgear.trains.file.shafting import Joint
+from solidgear.trains.file.solved_meshes import SolvedMeshes
 from solidgear.trains.file.tables import Losses, Mesh, Rotor, TrainAsk
 
 #: names of the shafts, and of what turns with them, in a file of the short form
@@ -108,6 +109,7 @@ class Train(Model):
     operation: Operation = ()
     ask: TrainAsk = TrainAsk()
     _origin: Origin = PrivateAttr(Origin())
+    _solved: SolvedMeshes = PrivateAttr(SolvedMeshes())
 
     @classmethod
     def of(cls, scene: Scene) -> Train:
@@ -277,6 +279,17 @@ class Train(Model):
         """Return the same train with the document that it was read from."""
         out = self.unjudged()
         out._origin = Origin(document, out)
+        return out
+
+    @property
+    def solved_meshes(self) -> SolvedMeshes:
+        """What its teeth give where they were solved; nothing of a train that has changed since."""
+        return self._solved
+
+    def with_solved_meshes(self, solved: SolvedMeshes) -> Train:
+        """Return the same train with what its teeth give at operating points."""
+        out = self.unjudged()
+        out._solved = solved
         return out
 
     @property

@@ -20,7 +20,6 @@ from solidgear.trains.assembly.housing import housing_facts
 from solidgear.trains.assembly.layout import senses, senses_sentence
 from solidgear.trains.assembly.local import undriven
 from solidgear.trains.assembly.matrices_body import matrices_facts
-from solidgear.trains.assembly.mesh_stiffness import USUAL
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.slips import mesh_unit_slips
 from solidgear.trains.file.mesh_teeth import wheels_of
@@ -100,6 +99,7 @@ def _notices(assembly: Assembly, light: Assembly, limit: float) -> Notices:
 def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
     train = assembly.train
     asked = {pair.name: pair for pair in assembly.asked_train.pairs}
+    at = "" if train.point is None else f" at {train.point.label}"
     for pair in train.pairs:
         contact, prefix = assembly.contacts[pair.name], f"{pair.name}: " if pair.label else ""
         levers = [1e3 * abs(vector.lever) for vector in (contact.pinion, contact.gear)]
@@ -108,7 +108,7 @@ def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
             f"{levers[1]:.2f} mm, mesh {contact.stiffness:.4g} N/m along "
             f"({', '.join(f'{v:.3f}' for v in contact.pinion.normal)}) on the {pair.shafts[0]}"
         )
-        yield from (prefix + fact for fact in _tooth_facts(asked[pair.name]))
+        yield from (prefix + fact for fact in _tooth_facts(asked[pair.name], at))
         teeth = train.per_turn(pair)
         yield (
             f"{prefix}the {limit:g} Hz asked for is the mesh frequency at {60 * limit / teeth:.0f} "
@@ -131,8 +131,10 @@ def _facts(assembly: Assembly, limit: float) -> Iterator[str]:
     )
 
 
-def _tooth_facts(pair: Pair) -> Iterator[str]:
-    """Yield facts on the teeth of a pair: their fit, and what is assumed where it counts."""
+def _tooth_facts(pair: Pair, at: str) -> Iterator[str]:
+    """Yield facts on the teeth of a pair at an operating point: their fit, and what is assumed where it
+    counts.
+    """
     fit, solves = fit_of(pair), pair.mesh.stiffness == TEETH
     is_described = any(gear.is_described for gear in pair.members.values())
     teeth = wheels_of(pair) if solves or is_described else None
@@ -141,10 +143,7 @@ def _tooth_facts(pair: Pair) -> Iterator[str]:
     if fit is not None:
         yield fit_line(fit)
     if solves:
-        yield (
-            f"the teeth give this stiffness (stiffness = {TEETH!r}); check solves no contact and "
-            f"takes {1e-9 * USUAL:g} N/(mm um) of face width"
-        )
+        yield f'the teeth give this stiffness (stiffness = "{TEETH}"){at}'
     if teeth is not None and teeth.assumed:
         yield f"assumed of the teeth: {'; '.join(teeth.assumed)}"
 

@@ -71,7 +71,7 @@ def check(
                 f"{option} is for one shaft, and {name_of_source(source)} is a train: for other "
                 "models and meshes run check on the file of a shaft"
             )
-        return check_train(Reduced().assembly(source, solves_teeth=False))
+        return check_train(Reduced().assembly(source))
     scene = load(under_case(source, case))
     # a model of revolution is looked at on the plain part, and the check says so
     part = scene if LADDER[model].can_model(scene) else scene.plain

@@ -24,7 +24,7 @@ def train_lives(train: Train) -> list[LivesOverPoints]:
         )
     scenes = {side: shaft.scene for side, shaft in train.shafts.items()}
     unknown, choices = left_open(scenes.values())
-    assembly = Assembly(train, solves_teeth=False)  # as they settle
+    assembly = Assembly(train)
     settled = [
         _states(Operating(assembly, choice=choice), train) for choice in (AS_STATED, *choices)
     ]

@@ -13,7 +13,7 @@ tangential and the spiral part of a tooth force round and leaves the part of the
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Hashable, Mapping
 from copy import copy
 from dataclasses import replace
 from functools import cached_property
@@ -51,6 +51,8 @@ from solidgear.trains.system.equilibrium import (
 SHAFT = "timoshenko"
 #: a [load] of a scene that is off the mesh force by less, of it, is that force written down
 SAME_LOAD = 0.05
+#: trains at rest that are kept: one on each flank, or the last two whose teeth differ
+FLANKS = 2
 LOOP = (
     "meshes of a loop divide the torque by their stiffness; errors of teeth and positions, which "
     "shift it, are left out"
@@ -106,24 +108,28 @@ class Operating:
         return tuple(out)
 
     @cached_property
-    def _flanks(self) -> dict[bool, OnBearings]:
+    def _meshing(self) -> dict[Hashable, OnBearings]:
+        """The last trains that were put at rest, by the load or the flank on which they mesh alike."""
         return {}
 
-    def _on_flank(self, coast: bool) -> tuple[Assembly, OnBearings]:
-        """Return the train with the flank that carries, without the bearings, and the seats that it
-        rests on.
+    def _at(self, point: OperatingPoint) -> tuple[Assembly, OnBearings]:
+        """Return the train as it meshes at an operating point, without the bearings, and the seats that
+        it rests on.
         """
-        assembly = self.assembly.on_flank(coast)
-        if coast not in self._flanks:
+        assembly = self.assembly.at(point, self.choice)
+        alike = assembly.teeth.load_that_counts(point) or point.coast
+        if alike not in self._meshing:
+            if len(self._meshing) == FLANKS:
+                del self._meshing[next(iter(self._meshing))]
             system = assembly.system(*self.models, bearings=False)
-            self._flanks[coast] = OnBearings(system, self._seats)
-        return assembly, self._flanks[coast]
+            self._meshing[alike] = OnBearings(system, self._seats)
+        return assembly, self._meshing[alike]
 
     def with_points(self, train: Train) -> Operating:
         """Return the same bearings on the same shafts, in a train that differs in operating points
         alone.
         """
-        _ = self._seats, self._flanks  # found once for all of them
+        _ = self._seats, self._meshing  # the same for all of them
         out = copy(self)
         out.assembly = self.assembly.with_train(train)
         return out
@@ -140,7 +146,7 @@ class Operating:
             # forces where teeth touch are not those of ports: the shaft by itself decides
             for side in self.assembly.following(state.models):
                 self.assembly.follow_alone(side, JUDGE)
-            self._flanks.clear()
+            self._meshing.clear()
             return self._settled(point, None)
 
         def finer() -> tuple[Mapping[str, Meshed], float]:
@@ -151,7 +157,7 @@ class Operating:
         def refine(meshes: Mapping[str, Meshed]) -> None:
             nonlocal state
             self.assembly.refine(meshes)
-            self._flanks.clear()
+            self._meshing.clear()
             state = self._settled(point, None)
 
         refine_meshes(finer, refine)
@@ -163,7 +169,7 @@ class Operating:
         if self.assembly.train.is_one_shaft and point.weight is None:
             (scene,) = self.assembly.scenes.values()
             point = point.with_changes(weight=scene.weight)
-        assembly, seated = self._on_flank(point.coast)
+        assembly, seated = self._at(point)
         forces = mesh_forces(assembly.train, assembly.contacts, point)
         loads, notes = self._loads(assembly, point, forces)
         total = seated.system.load(loads) + centrifugal_load(assembly, seated.system, point)
@@ -195,6 +201,7 @@ class Operating:
             models=assembly.models_by_shaft(self.models),
             mesh_forces=forces,
             equilibrium=solved,
+            assembly=assembly,
             system=seated.system,
             bearings=self.bearings,
             outside=loads,
@@ -273,7 +280,7 @@ def scene_loads(
             '"replaced", or "added" where it acts besides the teeth',
             path=(*train.shaft_path(side), "scene_load"),
         )
-    flanks = [(assembly.on_flank(p.coast), p) for p in train.operation]
+    flanks = [(assembly.at(p), p) for p in train.operation]
     mesh_loads = [_force_on(s, side, mesh_forces(train, s.contacts, p)) for s, p in flanks]
     mesh_loads.append(_force_on(assembly, side, forces))
     if any(np.linalg.norm(load[:3] - f) <= SAME_LOAD * np.linalg.norm(f) for f in mesh_loads):
@@ -316,7 +323,8 @@ def mean_forces(assembly: Assembly, point: OperatingPoint) -> dict[str, float]:
     """
     if None in assembly.train.flows.values():
         return Operating(assembly).at(point).mesh_forces
-    return mesh_forces(assembly.train, assembly.contacts, point)
+    meshing = assembly.at(point)
+    return mesh_forces(meshing.train, meshing.contacts, point)
 
 
 def loop_forces(
@@ -365,12 +373,18 @@ def at_point(train: Train, word: str | int | None = None) -> Train:
     -30.0
     """
     point = train.operation[0] if word is None and train.operation else named_point(train, word)
-    # bearings settle under the force of the teeth, whatever stiffness these have
-    assembly = Assembly(train, solves_teeth=False)
-    settled_train = with_settled_bearings(train, Operating(assembly).at(point))
-    return (
-        settled_train if word is not None else settled_train.with_changes(operation=train.operation)
-    )
+    settled_train = settled_at(train, point)
+    if word is not None:
+        return settled_train
+    settled = settled_train.with_changes(operation=train.operation)
+    return settled.with_solved_meshes(settled_train.solved_meshes)
+
+
+def settled_at(train: Train, point: OperatingPoint) -> Train:
+    """Return a train with bearings settled at an operating point, which is its only one."""
+    state = Operating(Assembly(train)).at(point)
+    solved = replace(state.assembly.teeth.solved, with_bearings=True)
+    return with_settled_bearings(train, state).with_solved_meshes(solved)
 
 
 def named_point(train: Train, word: str | int | None) -> OperatingPoint:

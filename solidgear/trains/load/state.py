@@ -9,6 +9,7 @@ import numpy as np
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.core import System
 from solidgear.core.system.system import port_forces
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.system.equilibrium import SystemEquilibrium
@@ -23,6 +24,7 @@ class OperatingState:
     #: along the line of action, N, by mesh; zero where no torque passes
     mesh_forces: dict[str, float]
     equilibrium: SystemEquilibrium  #: of all parts; the spring port of the engine does not turn
+    assembly: Assembly = field(repr=False)  #: the train as it meshes at the point
     #: without the bearings; the equilibrium is in its coordinates
     system: System = field(repr=False)
     bearings: dict[str, Catalogued] = field(

@@ -54,7 +54,7 @@ class StaticErrors:
     @cached_property
     def tangent(self) -> System:
         """The train on the stiffness that bearings have at rest."""
-        settled_train = with_settled_bearings(self.assembly.train, self.state)
+        settled_train = with_settled_bearings(self.state.assembly.train, self.state)
         return self.assembly.with_train(settled_train).coupled(self.state.models)
 
     @cached_property

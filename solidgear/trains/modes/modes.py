@@ -23,6 +23,8 @@ from solidgear.trains.modes.naming import OVALISING, driven, mode_names
 
 #: a frequency whose bound is above this is not resolved by the reduction
 RESOLVED = 1e-3
+#: of the first frequency that the reduction leaves out, up to which it promises something
+PROMISED = 0.9
 #: relative, of a frequency
 ROUNDING = 1e-9
 
@@ -279,13 +281,20 @@ def _mode_below_limit(omega: np.ndarray, bars: np.ndarray, limit: float) -> str:
     return ""
 
 
+def resolved_frequency(assembly: Assembly, system: System) -> float:
+    """Return the frequency up to which reduction and meshes resolve the modes of a train, Hz."""
+    cut = float(np.sqrt(system.truncation.cut) / (2 * np.pi))
+    meshes = [mesh_limit(assembly, side, system.parts[side]) for side in assembly.scenes]
+    return min(PROMISED * cut, *meshes)
+
+
 def refuse_unresolved(assembly: Assembly, system: System, limit: float) -> None:
     """Refuse a frequency at which the reduction promises nothing, or the mesh of a shaft."""
     cut = float(np.sqrt(system.truncation.cut) / (2 * np.pi))
-    if limit >= 0.9 * cut:
+    if limit >= PROMISED * cut:
         raise SolidgearError(
             f"{limit:g} Hz is beyond the reduction, which leaves out modes from {cut:.0f} Hz on; "
-            f"keep more modes (`kept`), or ask for less than {0.9 * cut:.0f} Hz"
+            f"keep more modes (`kept`), or ask for less than {PROMISED * cut:.0f} Hz"
         )
     for side in assembly.scenes:
         highest = mesh_limit(assembly, side, system.parts[side])

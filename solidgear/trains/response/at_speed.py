@@ -218,7 +218,7 @@ def _angles(train: Train) -> dict[str, tuple[float, ...]]:
     the operating point of the train, or without one at the loads of the scenes.
     """
     if train.point is not None:
-        state = Operating(Assembly(train, solves_teeth=False)).at(train.point)
+        state = Operating(Assembly(train)).at(train.point)
         return angles_of(state.bearings, state.equilibrium.relative)
     return {
         f"{side}.{name}": angles

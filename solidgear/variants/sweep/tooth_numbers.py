@@ -14,7 +14,7 @@ import numpy as np
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.study import touching
 from solidgear.teeth.supports import Carried, with_sections
-from solidgear.teeth.train_teeth import solved_mesh
+from solidgear.teeth.train_teeth import solved_mesh, with_teeth
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.operation import OperatingPoint
@@ -74,6 +74,10 @@ class TeethBench:
         self._states: list[tuple[OperatingPoint, Carried]] = []
         self._pairs: dict[Any, CylindricalPair] = {}
         self.settled = 0  #: states that were solved
+
+    def solved(self, key: Hashable, train: Train, point: OperatingPoint) -> Train:
+        """Return a train with the numbers of its teeth at an operating point."""
+        return with_teeth(train, self.carried(key, train, point))
 
     def carried(self, key: Hashable, train: Train, point: OperatingPoint) -> Carried:
         """Return a train at rest; the key is the same for trains that differ in operating points and

@@ -17,10 +17,9 @@ from solidgear.core import (
 from solidgear.core.models.limits import number
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
 from solidgear.teeth.study import touching
-from solidgear.teeth.train_teeth import with_teeth
 from solidgear.trains.assembly.assembly import KEPT
 from solidgear.trains.assembly.layout import contacts
-from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, has_settled
+from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, solved_meshes
 from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
 from solidgear.trains.file.flanks import Flanks
@@ -213,10 +212,11 @@ class TrainTask(FileTask):
             return at_rest, of_teeth | _loads(carried.state, at_rest)
         if asks_for_teeth(train):
             key = *key, index  # no other row has its mesh stiffness
-        if has_settled(train):
-            train = with_teeth(train, carried)
+            points = {point, *duty_points(train)} if BEARING in self.ask else {point}
+            solved = {p: self.teeth.solved(key[:-1], train, p) for p in points if p.torque}
+            train = train.with_solved_meshes(solved_meshes(solved))
         at_rest, out = self._settled(key, train, point)
-        return with_teeth(at_rest, carried), of_teeth | out
+        return at_rest, of_teeth | out
 
     def _settled(
         self, key: Hashable, train: Train, point: OperatingPoint
@@ -226,7 +226,7 @@ class TrainTask(FileTask):
         """
         on_shafts = (SHAFT,) * len(self.models)
         state = self.bench.operating(key, train, *on_shafts).at(point)
-        at_rest = with_settled_bearings(train, state)
+        at_rest = with_settled_bearings(state.assembly.train, state)
         out = _loads(state, at_rest)
         if BEARING in self.ask:
             operating = self.bench.operating(key, train, *on_shafts)
@@ -235,8 +235,7 @@ class TrainTask(FileTask):
             models = tuple(map(statics_of, self.models.values()))
             operating = self.bench.operating(key, train, *models)
             deflected = state if models == on_shafts else operating.at(point)
-            assembly = operating.assembly.on_flank(point.coast)
-            for measure in misalignment(assembly, deflected.system):
+            for measure in misalignment(deflected.assembly, deflected.system):
                 out[misaligned(measure.name)] = float(measure.row @ deflected.coordinates)
             for turn in over_a_turn(operating.assembly, deflected, deflected.models):
                 out[once(turn.stage)] = max(planet.once for planet in turn.planets)
@@ -375,10 +374,13 @@ def duty_states(train: Train, operating: Operating, state: OperatingState) -> li
     """Return the states at all operating points where these are a duty table, each begun at the state;
     else the state alone.
     """
+    return [operating.at(point, state) for point in duty_points(train)] or [state]
+
+
+def duty_points(train: Train) -> tuple[OperatingPoint, ...]:
+    """Return the operating points of a train where these are a duty table."""
     table = all(p.speed and (p.share is not None or p.hours is not None) for p in train.operation)
-    if not table or len(train.operation) < 2:
-        return [state]
-    return [operating.at(point, state) for point in train.operation]
+    return train.operation if table and len(train.operation) > 1 else ()
 
 
 def statics_of(model: str) -> str:
