@@ -49,8 +49,8 @@ def with_loadable(gearbox: Imported, source: str) -> Imported:
                 refused[name] = error
     if (gearbox.has_train and first in refused) or len(refused) == len(files):
         raise _in_document(refused[first], gearbox, source)
-    for name, error in refused.items():
-        problem = _in_document(error, gearbox, "").problems[0]
+    for name, reason in refused.items():
+        problem = _in_document(reason, gearbox, "").problems[0]
         gearbox.notes.drop(name, f"no scene can be made of it ({problem.sentence})")
     kept = {name: text for name, text in files.items() if name not in refused}
     return replace(gearbox, files=kept) if refused else gearbox

@@ -44,7 +44,9 @@ def read(path: str) -> Deck:
     masses: list[tuple[float, int]] = []
     in_deck = list(cards(text_of(path)))
     usual = next((card.fields[1] for card in in_deck if card.name == "GRDSET"), "")
-    weights = [c.fields[1] for c in in_deck if c.name == "PARAM" and c.fields[0].upper() == "WTMASS"]
+    weights = [
+        c.fields[1] for c in in_deck if c.name == "PARAM" and c.fields[0].upper() == "WTMASS"
+    ]
     # by which the solver multiplies all masses, such as 1 / g where densities are weights
     unit = (_plain(weights[-1]) if weights else None) or 1.0
     for card in in_deck:
