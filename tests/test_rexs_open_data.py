@@ -12,6 +12,7 @@ import solidgear as sg
 from solidgear.core import SolidgearError
 from solidgear.exchange.rexs.frames import frame_of
 from solidgear.exchange.rexs.importing import imported
+from solidgear.exchange.rexs.loadable import with_loadable
 from solidgear.exchange.rexs.reading import document_of
 from solidgear.trains.file.tooth_fit import fit_of
 from tests.command import command
@@ -208,6 +209,22 @@ def test_a_refusal_names_the_attribute_of_the_file_and_writes_nothing(case, tmp_
     run = command("import", source, "--out", out)
     assert run.exit_code and re.search(words, str(run.exception)), run.exception
     assert not out.exists()
+
+
+def test_a_shaft_outside_the_train_of_which_no_scene_can_be_made_is_left_out():
+    """A third shaft that no teeth join, on bearings of negative stiffness; the train is written."""
+    third = OK[OK.index('<component id="20"') : OK.index('<component id="21"')]
+    third = re.sub(r'id="2(\d+)"', r'id="8\1"', third).replace("200000000.0", "-2e8")
+    relations = OK[OK.index('    <relation id="14"') : OK.index('    <relation id="23"')]
+    relations = re.sub(r'ref id="2(\d+)"', r'ref id="8\1"', relations)
+    text = edited(
+        ('    <relation id="26"', relations + '    <relation id="26"'),
+        ('<component id="30"', third + '<component id="30"'),
+    )
+    result = with_loadable(made(text), "box.rexs")
+    assert [*result.files] == ["train.toml", "shaft_1.toml", "shaft_2.toml"]
+    left_out = " ".join(dict(result.notes.groups)["Left out"])
+    assert 'no scene can be made of it (concept_bearing 805 "bearing 205"' in left_out
 
 
 def test_an_entry_of_a_single_gear_is_named_by_its_key(tmp_path):

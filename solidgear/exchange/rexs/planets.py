@@ -66,6 +66,7 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
     angle, source = flank_number(gearbox, stage.sun.component, "normal_pressure_angle")
     if angle is None:
         angle, source = USUAL_PRESSURE_ANGLE, "assumed: ISO 53"
+        notes.assume(stage.component, "its normal_pressure_angle is 20 deg")
     mesh: dict[str, Any] = {}
     widths = [g.number("face_width") or 0.0 for g in (stage.sun.component, first, stage.ring)]
     width = min(w for w in widths if w) if any(widths) else 0.0
