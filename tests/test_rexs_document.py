@@ -148,7 +148,6 @@ HOSTILE = {
         "part of itself",
     ),
     "a component twice": (xml(SHAFT + SHAFT), "component 1 is there twice"),
-    "a relation twice": (xml(TWO, 2 * REF.format(kind="x", a=1, b=2)), "relation 1 is there twice"),
     "an attribute twice": (
         xml('<component id="1" type="x"><attribute id="a">1</attribute><attribute id="a">2</attribute></component>'),
         "attribute a is there twice",

@@ -165,7 +165,7 @@ def test_lengths_are_written_with_the_digits_that_a_person_gave():
 def test_a_hollow_shaft_has_a_rotor_file_for_ross(tmp_path):
     sg.export(CATALOGUE, tmp_path / "rotor.py", "ross")
     rows = [
-        row for row in (tmp_path / "rotor.py").read_text().splitlines() if "ShaftElement" in row
+        row for row in (tmp_path / "rotor.py").read_text().splitlines() if "BeamElement(" in row
     ]
     assert sum("0.012, 0.05" in row for row in rows) > 8
 

@@ -1490,6 +1490,22 @@ MUTATIONS = (
         "section.second_moment",
         "tests/test_manual.py::test_case[printed_norm_cross_hole-A]",
     ),
+    Mutation(
+        "profile shifts of REXS follow twice from the centre distance",
+        "solidgear/exchange/rexs/profile_shifts.py",
+        "_sum_of_shifts",
+        "working * count / (2 * tan(normal))",
+        "working * count / tan(normal)",
+        "tests/test_rexs_open_data.py::test_a_profile_shift_that_is_left_open_follows_from_the_centre_distance",
+    ),
+    Mutation(
+        "turned directions of nodes are turned the other way",
+        "solidgear/exchange/matrices/nodes.py",
+        "NodeMatrices._in_axes",
+        "turn @ table @ turn.T",
+        "turn.T @ table @ turn",
+        "tests/test_matrices_turned.py::test_options_of_abaqus_have_their_meaning",
+    ),
 )
 
 

@@ -14,8 +14,14 @@ from solidgear.core.reduction.matrix_units import MATRIX_UNITS, SI, matrix_units
 from solidgear.core.reduction.port_matrices import PortMatrices, not_free
 from solidgear.exchange.export import OTHERS, is_rexs, refuse_options
 from solidgear.exchange.matrices.formats import FORMATS, format_of, write_matrices
-from solidgear.exchange.matrices.ross import write_ross
-from solidgear.exchange.matrices.source import CRAIG_BAMPTON, MODEL, Wanted, port_matrices
+from solidgear.exchange.matrices.ross import rotor_remarks, write_ross
+from solidgear.exchange.matrices.source import (
+    CRAIG_BAMPTON,
+    MODEL,
+    Wanted,
+    port_matrices,
+    read_shaft,
+)
 from solidgear.exchange.rexs.export.exporting import Exported, write_rexs
 from solidgear.exchange.rexs.units import REST
 from solidgear.show.command import Progress, command
@@ -106,7 +112,8 @@ def export(
             return _rexs_sheet(write_rexs(file, out), file, out)
         source = document_under(file, case)
         if to == "ross":
-            return _written(write_ross(source, out, system, **wanted))
+            remarks = rotor_remarks(read_shaft(source), held=bearings is not False)
+            return _rotor_sheet(write_ross(source, out, system, **wanted), remarks)
         format_of(out, to or "", OTHERS)
         matrices = port_matrices(source, **wanted)
         return _sheet(matrices, write_matrices(matrices, out, to or "", system), system)
@@ -147,9 +154,11 @@ def _rexs_sheet(result: Exported, file: Path, out: Path) -> Sheet:
     return Sheet("export", str(file), facts, tables, data, notes=notes)
 
 
-def _written(files: list[Path]) -> Sheet:
+def _rotor_sheet(files: list[Path], remarks: list[str]) -> Sheet:
+    """Return what was written, and in what the rotor is another model than the beam here."""
     names = ", ".join(map(str, files))
-    return Sheet("export", f"Written: {names}", "", [], {"files": [*map(str, files)]})
+    notes = [f"{remark[:1].upper()}{remark[1:]}." for remark in remarks]
+    return Sheet("export", f"Written: {names}", "", [], {"files": [*map(str, files)]}, notes=notes)
 
 
 def _sheet(matrices: PortMatrices, files: list[Path], units: str) -> Sheet:

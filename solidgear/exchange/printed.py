@@ -35,6 +35,5 @@ IMPORT = Printed(
         "train": bool,
         "facts": list[str],
         "notes": dict[str, list[str]],  # by what they are: contradictory, assumed, left out
-        "problem": str | None,  # why the files cannot be used as they are
     }
 )

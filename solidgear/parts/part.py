@@ -14,8 +14,7 @@ from __future__ import annotations
 
 import hashlib
 import math
-import re
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -34,6 +33,7 @@ from solidgear.parts.decks.deck import reader_of
 from solidgear.parts.part_file import PartContent, coarser_meshes, content_of, read, skin
 from solidgear.parts.recognised import Recognised
 from solidgear.parts.round_part import ON_LINE, RoundPart, round_part
+from solidgear.parts.step_unit import SAME_UNIT, length_unit, unit_words
 
 #: least share of the surface that is round about the axis, for a part to be a shaft
 LEAST_ROUND = 0.2
@@ -53,16 +53,6 @@ SECTIONS, SCANS = 3, 200
 #: factors between units that are taken for one another
 SLIPS = {1e3: "mm taken for m", 1e-3: "m taken for mm", 25.4: "mm taken for inch"}
 SLIPS |= {1 / 25.4: "inch taken for mm", 39.37: "m taken for inch", 1 / 39.37: "inch taken for m"}
-#: a representation of a shape: its items and its context
-_SHAPE = re.compile(
-    rb"SHAPE_REPRESENTATION\s*\(\s*'(?:[^']|'')*'\s*,\s*\(([^()]*)\)\s*,\s*(#\d+)\s*\)"
-)
-_SOLID = re.compile(
-    rb"(#\d+)\s*=\s*\(?\s*(?:MANIFOLD_SOLID_BREP|BREP_WITH_VOIDS|FACETED_BREP)\s*\("
-)
-_UNITS = re.compile(rb"GLOBAL_UNIT_ASSIGNED_CONTEXT\s*\(\s*\(([^()]*)\)")
-_NUMBER = re.compile(rb"#\d+")
-_PREFIX = {b"MILLI": "mm", b"CENTI": "cm", b"": "m"}
 
 
 class Share(NamedTuple):
@@ -219,14 +209,10 @@ def _unit(table: BodyTable, path: Path, content: bytes) -> tuple[float, tuple[st
             )
         return in_file, ()
     unit = UNITS[table.unit]
-    if in_file is None or math.isclose(unit, in_file, rel_tol=1e-6):
+    if in_file is None or math.isclose(unit, in_file, rel_tol=SAME_UNIT):
         return unit, ()
-    names = {value: name for name, value in UNITS.items()}
-    unit_name = next(
-        (n for value, n in names.items() if math.isclose(value, in_file, rel_tol=1e-6)), ""
-    )
     remark = (
-        f"its dataset 164 says that lengths are in {unit_name or f'units of {in_file:g} m'}, but unit = "
+        f"its dataset 164 says that lengths are in {unit_words(in_file)}, but unit = "
         f'"{table.unit}" of the [body] is taken: one of them is wrong by a factor of '
         f"{max(unit / in_file, in_file / unit):.4g}"
     )
@@ -242,72 +228,10 @@ def _unit_of_step(table: BodyTable, content: bytes) -> float:
         raise MeshError('is no STEP file: it does not begin with "ISO-10303-21;"')
     if b"END-ISO-10303-21" not in content[-2000:]:
         raise MeshError('is cut off: it does not end with "END-ISO-10303-21;"')
-    file_unit = length_unit(content)
-    if table.unit is not None and UNITS[table.unit] != UNITS[file_unit]:
-        raise SceneError(f"the file itself says {file_unit}", path=("unit",))
-    return UNITS[file_unit]
-
-
-def length_unit(content: bytes) -> str:
-    """Return the name of the unit of length that a STEP file gives to its solids; MeshError where
-    it gives none that is known here, or several.
-
-    A file has units for much besides: of a density, of tolerances, of drawings. Those of the
-    coordinates are in the context of the representation that holds the solids,
-    ``GLOBAL_UNIT_ASSIGNED_CONTEXT``.
-
-    Examples
-    --------
-    >>> length_unit(
-    ...     b"#1=(GLOBAL_UNIT_ASSIGNED_CONTEXT((#2))REPRESENTATION_CONTEXT('',''));"
-    ...     b"#2=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT(.MILLI.,.METRE.));"
-    ...     b"#3=(LENGTH_UNIT()NAMED_UNIT(*)SI_UNIT($,.METRE.));#4=DERIVED_UNIT_ELEMENT(#3,-3.);"
-    ... )
-    'mm'
-    """
-    texts = {text for context in _contexts(content) for text in _units_of(context, content)}
-    lengths = [text for text in texts if b"LENGTH_UNIT" in text]
-    units = sorted({unit for unit in map(_unit_of, lengths) if unit})
-    if len(units) != 1:
-        fault = f"several units of length ({', '.join(units)})" if units else "no unit of length"
-        raise MeshError(
-            f"names {fault} that is known here for its solids; known are mm, cm, m and inch"
-        )
-    return units[0]
-
-
-def _contexts(content: bytes) -> list[bytes]:
-    """Return the contexts of the representations that hold solids; of all shapes, or all there are,
-    where none does.
-    """
-    shapes = [(_NUMBER.findall(items), context) for items, context in _SHAPE.findall(content)]
-    solids = set(_SOLID.findall(content))
-    names = {context for items, context in shapes if solids & {*items}}
-    names = names or {context for _, context in shapes}
-    chosen = [_text(name, content) for name in names]
-    return [text for text in chosen if _UNITS.search(text)] or [content]
-
-
-def _units_of(context: bytes, content: bytes) -> Iterator[bytes]:
-    """Yield the texts of the units that a context names."""
-    for units in _UNITS.findall(context):
-        for name in _NUMBER.findall(units):
-            yield _text(name, content)
-
-
-def _text(name: bytes, content: bytes) -> bytes:
-    """Return the text of an entity such as ``#12``; empty where the file has none."""
-    match = re.search(rb"(?<![\d#])" + name + rb"\s*=([^;]*);", content)
-    return match[1] if match else b""
-
-
-def _unit_of(text: bytes) -> str | None:
-    converted = re.search(rb"CONVERSION_BASED_UNIT\s*\(\s*'([^']*)'", text)
-    if converted:
-        name = converted[1].strip().upper()
-        return "inch" if name in (b"INCH", b"IN") else None
-    plain = re.search(rb"SI_UNIT\s*\(\s*(?:\.(\w+)\.|\$)\s*,\s*\.METRE\.\s*\)", text)
-    return _PREFIX.get(plain[1] or b"") if plain else None
+    unit = length_unit(content)
+    if table.unit is not None and not math.isclose(UNITS[table.unit], unit, rel_tol=SAME_UNIT):
+        raise SceneError(f"the file itself says {unit_words(unit)}", path=("unit",))
+    return unit
 
 
 def _foot(table: BodyTable) -> Triple:

@@ -330,7 +330,8 @@ class Placed(Model):
         """Return the fields of a place that is refused."""
         keys = cls.table_keys()
         fields = [key for key, field in cls.model_fields.items() if field.is_required()]
-        seated = ["seat_width"] if "seat" in table and "seat_width" in fields else []
+        has_width = "seat" in table or "patch" in table  # which is refused, and its width with it
+        seated = ["seat_width"] if has_width and "seat_width" in fields else []
         return dict.fromkeys([key for key in fields if key not in keys] + seated)
 
 

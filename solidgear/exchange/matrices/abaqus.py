@@ -1,7 +1,8 @@
 """Abaqus: matrices as ``*MATRIX INPUT``; what Abaqus and CalculiX write of matrices is read.
 
 Read are lines ``node, direction, node, direction, value`` under ``*MATRIX INPUT`` or alone
-(``*MATRIX GENERATE`` with ``*MATRIX OUTPUT``, files of one matrix each), the lower triangles of
+(``*MATRIX GENERATE`` with ``*MATRIX OUTPUT``, files of one matrix each), also in files that these
+name, in the directions of ``*TRANSFORM`` and times ``SCALE FACTOR``; the lower triangles of
 ``*USER ELEMENT`` (``*SUBSTRUCTURE MATRIX OUTPUT`` of both programs), and the ``.sti`` and ``.mas``
 of CalculiX with the ``.dof`` beside them (``*FREQUENCY, SOLVER=MATRIXSTORAGE``).
 """
@@ -9,7 +10,7 @@ of CalculiX with the ``.dof`` beside them (``*FREQUENCY, SOLVER=MATRIXSTORAGE``)
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 
 import numpy as np
@@ -19,12 +20,27 @@ from solidgear.core.reduction.matrix_units import MatrixUnits
 from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.exchange.matrices.header import header, stated
 from solidgear.exchange.matrices.nodes import Label, NodeMatrices, node_of, real
+from solidgear.parts.decks.left_out import KEYWORDS, sort_of
 
 #: keywords of ``*MATRIX ASSEMBLE``, of matrices that Abaqus takes
 KEYS = {"stiffness": "STIFFNESS", "mass": "MASS", "damping": "STRUCTURAL DAMPING"}
 #: words in names of files of one matrix, and of the file beside it
 BESIDE = (("STIF", "MASS"), ("stif", "mass"), (".sti", ".mas"))
 SQUARE = "gyroscopic"
+#: keywords whose data may stand in another file
+NAMING = ("INCLUDE", "NODE", "MATRIX INPUT")
+#: options of keywords that are read; any other would turn, scale or move what they hold
+OPTIONS = {
+    "NODE": ("NSET", "INPUT", "SYSTEM"),
+    "NSET": ("NSET", "GENERATE", "UNSORTED", "INTERNAL"),
+    "TRANSFORM": ("NSET", "TYPE"),
+    "MATRIX INPUT": ("NAME", "INPUT", "TYPE", "SCALE FACTOR"),
+    "MATRIX ASSEMBLE": ("STIFFNESS", "MASS", "STRUCTURAL DAMPING"),
+    "MATRIX": ("TYPE",),
+    "USER ELEMENT": ("NODES", "TYPE", "LINEAR", "COORDINATES", "PROPERTIES", "VARIABLES"),
+}
+#: keywords with data that move or turn nodes
+MOVING = ("SYSTEM", "NMAP", "INSTANCE", "SUBSTRUCTURE PROPERTY")
 
 
 def write(matrices: PortMatrices, path: Path, units: MatrixUnits) -> dict[Path, bytes]:
@@ -74,54 +90,206 @@ def read(path: Path, source: str) -> NodeMatrices:
 
 def _read_into(out: NodeMatrices, path: Path, alone: str) -> None:
     """Read one file; lines of a matrix without a keyword are of the matrix ``alone``."""
+    deck = _Deck(out, alone)
     comments: list[str] = []
-    keyword, name = "", alone
-    options: dict[str, str] = {}
-    element = _Element()
-    lines = path.read_text("utf-8", errors="replace").splitlines()
-    if lines and lines[0].startswith("%%MatrixMarket"):
-        raise out.wrong("is a Matrix Market file; name the .json beside it, which has the points")
-    for number, raw in enumerate(lines, start=1):
-        line = raw.strip()
+    for place, line in _lines(out, path):
+        if line.startswith("%%MatrixMarket"):
+            raise out.wrong(
+                "is a Matrix Market file; name the .json beside it, which has the points"
+            )
         if line.startswith("**"):
             comments.append(line)
-            element.comment(line)
+            deck.element.comment(line)
         elif line.startswith("*"):
-            keyword, options = _keyword(line)
-            if keyword == "MATRIX INPUT":
-                name = _meaning(options.get("NAME", ""), alone)
-            elif keyword == "USER ELEMENT":
-                element = _Element()
-            elif keyword == "MATRIX":
-                element.begin(_meaning(options.get("TYPE", ""), alone))
+            deck.begin(*_keyword(line), place)
         elif line:
-            try:
-                values = [float(part) for part in line.replace(",", " ").split()]
-            except ValueError:
-                if keyword in ("MATRIX INPUT", "MATRIX", "USER ELEMENT", "NODE"):
-                    raise out.wrong(f"line {number}: {line[:60]!r} is no row of numbers") from None
-                continue
-            if keyword == "NODE" and len(values) >= 4:
-                out.places[int(values[0])] = np.array(values[1:4])
-            elif keyword == "USER ELEMENT":
-                element.direction(values)
-            elif keyword == "MATRIX":
-                element.numbers.setdefault(element.name, []).extend(values)
-            elif keyword in ("", "MATRIX INPUT") and len(values) == 5:
-                row, column = (int(values[0]), int(values[1])), (int(values[2]), int(values[3]))
-                symmetric = options.get("TYPE", "SYMMETRIC") != "UNSYMMETRIC"
-                out.add(name, row, column, values[4], symmetric)
+            deck.data(line, place)
+    deck.finish()
     head = stated(comments)
     out.head.names |= head.names
     out.head.units = out.head.units or head.units
-    element.into(out)
+
+
+def _lines(
+    out: NodeMatrices, path: Path, inside: tuple[Path, ...] = ()
+) -> Iterator[tuple[str, str]]:
+    """Yield the lines of a file, each with its place, and those of files that it names in theirs."""
+    if path in inside:
+        raise out.wrong(f"{path.name} names itself")
+    name = f"{path.name}, " if inside else ""
+    begun = ""
+    for number, raw in enumerate(path.read_text("utf-8", errors="replace").splitlines(), start=1):
+        line, begun = begun + raw.strip(), ""
+        is_keyword = line.startswith("*") and not line.startswith("**")
+        if is_keyword and line.endswith(","):
+            begun = line  # it goes on in the next line
+            continue
+        keyword, options = _keyword(line) if is_keyword else ("", {})
+        if keyword != "INCLUDE":
+            yield f"{name}line {number}", line
+        if keyword in NAMING and "INPUT" in options:
+            beside = path.parent / options["INPUT"]
+            if not beside.is_file():
+                raise out.wrong(f"{name}line {number}: the file {options['INPUT']} is missing")
+            yield from _lines(out, beside, (*inside, path))
 
 
 def _keyword(line: str) -> tuple[str, dict[str, str]]:
-    """Return a keyword and its options, in capitals."""
-    name, *options = (part.strip().upper() for part in line[1:].split(","))
-    pairs = (option.partition("=") for option in options)
-    return " ".join(name.split()), {key.strip(): value.strip() for key, _, value in pairs}
+    """Return a keyword in capitals and its options, with values as they are written."""
+    name, *options = (part.strip() for part in line[1:].split(","))
+    pairs = (option.partition("=") for option in options if option)
+    return " ".join(name.upper().split()), {
+        " ".join(key.upper().split()): value.strip().strip("\"'") for key, _, value in pairs
+    }
+
+
+class _Deck:
+    """Keywords and data of a file, as they come; all that it turns or scales is known at its end."""
+
+    def __init__(self, out: NodeMatrices, alone: str) -> None:
+        self._out, self._alone = out, alone
+        self.element = _Element()
+        self._keyword, self._options = "", dict[str, str]()
+        self._sets: dict[str, list[int]] = {}
+        #: place, TYPE and NSET of a *TRANSFORM, and its numbers
+        self._transforms: list[tuple[str, dict[str, str], list[float]]] = []
+        #: entries by the name of a matrix; lines without a keyword have none
+        self._entries: dict[str, list[tuple[Label, Label, float, bool]]] = {}
+        self._roles: dict[str, list[str]] = {}  #: names of matrices, by what they are assembled as
+
+    def begin(self, keyword: str, options: dict[str, str], place: str) -> None:
+        """Begin a keyword; refuse options that would change numbers here."""
+        self._keyword, self._options = keyword, options
+        known = OPTIONS.get(keyword, options)
+        for option in options:
+            if option not in known:
+                raise self._out.wrong(f"{place}: *{keyword} with {option} is not read here")
+        if keyword == "NODE" and options.get("SYSTEM", "R").upper() != "R":
+            raise self._out.wrong(
+                f"{place}: nodes in another system than x, y, z are not read here"
+            )
+        if keyword == "MATRIX INPUT":
+            shape = options.get("TYPE", "SYMMETRIC").upper()
+            if shape not in ("SYMMETRIC", "UNSYMMETRIC"):
+                raise self._out.wrong(f"{place}: a matrix of the type {shape} is not read here")
+            self._scale = self._real(options.get("SCALE FACTOR", "1"), place)
+            self._entries.setdefault(options.get("NAME", "").upper(), [])
+        elif keyword == "MATRIX ASSEMBLE":
+            for key, name in KEYS.items():
+                if name in options:
+                    self._roles.setdefault(key, []).append(options[name].upper())
+        elif keyword == "USER ELEMENT":
+            self.element = _Element()
+        elif keyword == "MATRIX":
+            self.element.begin(_meaning(options.get("TYPE", ""), self._alone))
+        elif keyword == "TRANSFORM":
+            self._transforms.append((place, options, []))
+        elif sort_of(keyword, KEYWORDS) is not None and not keyword.startswith("MATRIX"):
+            self._out.left_out[f"*{keyword}"] = None
+
+    def data(self, line: str, place: str) -> None:
+        """Read a line of data."""
+        keyword = self._keyword
+        if keyword in MOVING:
+            raise self._out.wrong(f"{place}: *{keyword} moves or turns nodes, and is not read here")
+        if keyword == "NSET":
+            self._sets.setdefault(self._options.get("NSET", "").upper(), []).extend(
+                self._members(line, place)
+            )
+            return
+        try:
+            values = [float(part) for part in line.replace(",", " ").split()]
+        except ValueError:
+            if keyword in ("MATRIX INPUT", "MATRIX", "USER ELEMENT", "NODE", "TRANSFORM"):
+                raise self._out.wrong(f"{place}: {line[:60]!r} is no row of numbers") from None
+            return
+        if keyword == "NODE" and len(values) >= 4:
+            self._out.places[int(values[0])] = np.array(values[1:4])
+            self._sets.setdefault(self._options.get("NSET", "").upper(), []).append(int(values[0]))
+        elif keyword == "TRANSFORM":
+            self._transforms[-1][2].extend(values)
+        elif keyword == "USER ELEMENT":
+            self.element.direction(values)
+        elif keyword == "MATRIX":
+            self.element.numbers.setdefault(self.element.name, []).extend(values)
+        elif keyword in ("", "MATRIX INPUT") and len(values) == 5:
+            name, scale, symmetric = "", 1.0, True
+            if keyword:
+                name, scale = self._options.get("NAME", "").upper(), self._scale
+                symmetric = self._options.get("TYPE", "SYMMETRIC").upper() != "UNSYMMETRIC"
+            row, column = (int(values[0]), int(values[1])), (int(values[2]), int(values[3]))
+            self._entries.setdefault(name, []).append((row, column, scale * values[4], symmetric))
+
+    def finish(self) -> None:
+        """Hand what was read to the matrices by nodes."""
+        for name, entries in self._entries.items():
+            meaning = self._meaning(name)
+            for row, column, value, symmetric in entries if meaning else ():
+                self._out.add(meaning, row, column, value, symmetric)
+        self.element.into(self._out)
+        for place, options, numbers in self._transforms:
+            name = options.get("NSET", "")
+            if name.upper() not in self._sets:
+                raise self._out.wrong(f"{place}: there is no set of nodes {name!r}")
+            for node in self._sets[name.upper()]:
+                self._out.turns[node] = self._axes(place, options, numbers, node)
+
+    def _meaning(self, name: str) -> str:
+        """Return what a matrix is: as it is assembled, else by its name, else the only one; empty for
+        one that is not assembled.
+        """
+        if self._roles:
+            return next((key for key, names in self._roles.items() if name in names), "")
+        meaning = _meaning(name, "")
+        if not meaning and len(self._entries) > 1:
+            raise self._out.wrong(
+                f"nothing says what the matrix {name or 'without a name'} is; add *MATRIX ASSEMBLE "
+                "with STIFFNESS= and MASS="
+            )
+        return meaning or self._alone
+
+    def _axes(
+        self, place: str, options: dict[str, str], numbers: list[float], node: int
+    ) -> np.ndarray:
+        """Return the directions (3, 3) of a node that a *TRANSFORM turns, as columns in x, y, z."""
+        kind = options.get("TYPE", "R").upper()
+        if kind not in ("R", "C") or len(numbers) != 6:
+            raise self._out.wrong(
+                f"{place}: *TRANSFORM with six numbers and TYPE=R or C is read, not {kind}"
+            )
+        a, b = np.array(numbers[:3]), np.array(numbers[3:])
+        if kind == "R":
+            first, across = a, b
+        else:
+            if node not in self._out.places:
+                raise self._out.wrong(f"{place}: nothing says where its node {node} lies")
+            axis = b - a
+            first = self._out.places[node] - a
+            first = first - axis * (first @ axis) / max(axis @ axis, np.finfo(float).tiny)
+            across = np.cross(axis, first)
+        third = np.cross(first, across)
+        size = np.linalg.norm(first), np.linalg.norm(third)
+        if not min(size) > 0:
+            raise self._out.wrong(f"{place}: *TRANSFORM gives node {node} no directions")
+        first, third = first / size[0], third / size[1]
+        return np.column_stack([first, np.cross(third, first), third])
+
+    def _members(self, line: str, place: str) -> list[int]:
+        """Return the nodes of a line of a set."""
+        words = [word.strip() for word in line.split(",") if word.strip()]
+        if "GENERATE" in self._options:
+            first, last, *step = (int(self._real(word, place)) for word in words[:3])
+            return [*range(first, last + 1, max(*step, 1) if step else 1)]
+        out: list[int] = []
+        for word in words:
+            out += [int(word)] if word.isdigit() else self._sets.get(word.upper(), [])
+        return out
+
+    def _real(self, text: str, place: str) -> float:
+        try:
+            return float(text)
+        except ValueError:
+            raise self._out.wrong(f"{place}: {text[:30]!r} is no number") from None
 
 
 def _meaning(word: str, alone: str) -> str:

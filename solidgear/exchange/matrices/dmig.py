@@ -5,6 +5,7 @@ A large field has 16 characters; numbers are written with the exponent that leav
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -22,6 +23,8 @@ CASE = {"stiffness": "K2GG", "mass": "M2GG", "damping": "K42GG", "gyroscopic": "
 #: first letters by which other programs name the matrices they write
 FIRST = {"K4": "damping", "K": "stiffness", "M": "mass"}
 SYMMETRIC, SQUARE = 6, 1
+#: parameters that multiply matrices
+FACTORS = ("CK2", "CK42", "CM2", "CB2")
 
 
 def real(value: float) -> str:
@@ -104,18 +107,35 @@ def read(path: Path, source: str) -> NodeMatrices:
     out = NodeMatrices(source, head=stated(s for s in text.splitlines() if s[:1] == "$"))
     symmetric: dict[str, bool] = {}
     names: dict[str, str] = {}
-    for card in _cards(text):
-        kind = card[0].rstrip("*").upper()
+    cards = list(_cards(text))
+    usual = next((_systems(card) for card in cards if _kind(card) == "GRDSET"), ("", ""))
+    turned = _rectangular(cards)
+    _refuse_scales(out, text, cards)
+    for card in cards:
+        kind = _kind(card)
         if kind == "GRID" and len(card) > 5:
-            if card[2].strip() not in ("", "0"):
+            place_in, move_in = (a or b for a, b in zip(_systems(card), usual))
+            if place_in not in ("", "0"):
                 raise out.wrong(
-                    f"node {card[1].strip()} lies in coordinate system {card[2].strip()}; write "
-                    "nodes in the basic system"
+                    f"node {card[1].strip()} lies in coordinate system {place_in}; write nodes in the "
+                    "basic system"
                 )
+            if move_in not in ("", "0"):
+                if move_in not in turned:
+                    raise out.wrong(
+                        f"node {card[1].strip()} moves in coordinate system {move_in}; only those "
+                        "of CORD2R in the basic system are read"
+                    )
+                out.turns[int(card[1])] = turned[move_in]
             out.places[int(card[1])] = np.array([number(v or "0") for v in card[3:6]])
         elif kind == "DMIG" and len(card) > 3:
             label = card[1].strip().upper()
             if card[2].strip() == "0" and label not in symmetric:
+                if card[3].strip() not in (str(SYMMETRIC), str(SQUARE)):
+                    raise out.wrong(
+                        f"the matrix {label} has the form {card[3].strip()}; square (1) and symmetric "
+                        "(6) ones are read"
+                    )
                 symmetric[label] = int(card[3]) == SYMMETRIC
                 names[label] = _meaning(label)
                 _refuse_complex(out, label, card)
@@ -130,6 +150,47 @@ def read(path: Path, source: str) -> NodeMatrices:
     if not out.entries:
         raise out.wrong("has no DMIG entries")
     return out
+
+
+def _kind(card: list[str]) -> str:
+    return card[0].rstrip("*").upper()
+
+
+def _systems(card: list[str]) -> tuple[str, str]:
+    """Return the coordinate systems of the place and of the motions of a GRID or a GRDSET."""
+    fields = (card + [""] * 7)[2:7]
+    return fields[0].strip(), fields[4].strip()
+
+
+def _rectangular(cards: list[list[str]]) -> dict[str, np.ndarray]:
+    """Return the directions (3, 3) of rectangular systems in the basic one, as columns, by number."""
+    out = {}
+    for card in cards:
+        if _kind(card) != "CORD2R" or card[2].strip() not in ("", "0"):
+            continue
+        values = [number(v) if v.strip() else 0.0 for v in (card + [""] * 9)[3:12]]
+        origin, on_z, in_xz = np.reshape(values, (3, 3))
+        z = on_z - origin
+        y = np.cross(z, in_xz - origin)
+        if np.any(y):
+            z, y = z / np.linalg.norm(z), y / np.linalg.norm(y)
+            out[card[1].strip()] = np.column_stack([np.cross(y, z), y, z])
+    return out
+
+
+def _refuse_scales(out: NodeMatrices, text: str, cards: list[list[str]]) -> None:
+    """Refuse factors by which the deck multiplies its matrices."""
+    for card in cards:
+        name = card[1].strip().upper() if _kind(card) == "PARAM" and len(card) > 2 else ""
+        if name in FACTORS and number(card[2]) != 1:
+            raise out.wrong(
+                f"PARAM {name} multiplies its matrices by {card[2].strip()}; leave it out"
+            )
+    factor = re.search(r"^\s*([KMB]\d+(?:GG|PP))\s*=.*\*", text, re.M | re.I)
+    if factor:
+        raise out.wrong(
+            f"{factor[1].upper()} takes a matrix times a factor; multiply the matrix by it"
+        )
 
 
 def _meaning(label: str) -> str:

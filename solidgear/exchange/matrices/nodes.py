@@ -51,6 +51,9 @@ class NodeMatrices:
     entries: dict[str, dict[tuple[Label, Label], float]] = field(default_factory=dict)
     places: dict[int, np.ndarray] = field(default_factory=dict)  #: in the units of the file
     head: Stated = field(default_factory=Stated)
+    #: directions (3, 3) of nodes that are turned, as columns in x, y, z
+    turns: dict[int, np.ndarray] = field(default_factory=dict)
+    left_out: dict[str, None] = field(default_factory=dict)  #: what the file has beside matrices
     #: in place of entries: nodes and directions of rows, and the matrices
     stored: tuple[list[Label], dict[str, sp.csr_matrix]] | None = None
 
@@ -67,7 +70,7 @@ class NodeMatrices:
 
     def matrices(self, points: Mapping[str, Any] | None, units: str) -> PortMatrices:
         """Return the matrices by points, called as the user or else the file has it, and modes."""
-        labels, tables = self.stored or self._assembled()
+        labels, tables = self._in_axes(*(self.stored or self._assembled()))
         rows = {label: k for k, label in enumerate(labels)}
         nodes: dict[int, int] = {}
         for node, _ in labels:
@@ -91,6 +94,8 @@ class NodeMatrices:
         system = matrix_units(units or self.head.units or "m-kg-N")
         places = self._places(points, point_nodes, system)
         arrays, notes = self._with_modes(arrays, places)
+        if self.left_out:
+            notes = (*notes, f"left out: {', '.join(self.left_out)}")
         return checked_matrices(self.source, arrays, places, system, notes)
 
     def _assembled(self) -> tuple[list[Label], dict[str, sp.csr_matrix]]:
@@ -103,6 +108,27 @@ class NodeMatrices:
             size = (len(labels), len(labels))
             tables[name] = sp.csr_matrix((list(entries.values()), tuple(at)), shape=size)
         return labels, tables
+
+    def _in_axes(
+        self, labels: list[Label], tables: Mapping[str, sp.csr_matrix]
+    ) -> tuple[list[Label], Mapping[str, sp.csr_matrix]]:
+        """Return the matrices with the motions of turned nodes along x, y, z."""
+        rows = {label: k for k, label in enumerate(labels)}
+        turn = sp.eye(len(labels), format="lil")
+        for node, axes in self.turns.items():
+            for triple in ((1, 2, 3), (4, 5, 6)):
+                places = [rows[node, d] for d in triple if (node, d) in rows]
+                if places and len(places) < 3:
+                    raise self.wrong(
+                        f"node {node} has turned directions and moves in {len(places)} of three; give "
+                        "all three, or none"
+                    )
+                if places:
+                    turn[np.ix_(places, places)] = axes
+        if not self.turns:
+            return labels, tables
+        turn = turn.tocsr()
+        return labels, {name: turn @ table @ turn.T for name, table in tables.items()}
 
     def _named(
         self, points: Mapping[str, Any] | None, nodes: Mapping[int, int]

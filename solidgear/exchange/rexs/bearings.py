@@ -158,7 +158,10 @@ def _given(bearing: Component, radial: float | None, notes: Notes) -> dict[str, 
         entries["kyy"] = said(stiffness, "N/m")
         if absorbs in ("positive", "negative"):
             notes.assume(bearing, BOTH_WAYS)
-    tilting = min(bearing.number("bending_stiffness") or 0.0, RIGID_TURN)
+    bending = bearing.number("bending_stiffness")
+    if bending is None and bearing.kind not in ROLLING:
+        notes.assume(bearing, "no bending_stiffness is given: it does not hold the shaft in tilt")
+    tilting = min(bending or 0.0, RIGID_TURN)
     if tilting:
         entries["kthx"] = entries["kthz"] = said(tilting, "N*m/rad")
     if rigid:

@@ -13,8 +13,9 @@ import typer
 from solidgear.core import SolidgearError, whole
 from solidgear.exchange.rexs.document import RexsError
 from solidgear.exchange.rexs.importing import Imported, imported, name_of
+from solidgear.exchange.rexs.loadable import with_loadable
 from solidgear.exchange.rexs.reading import read
-from solidgear.show.command import NOT_REACHED, as_typed, command, filled, say
+from solidgear.show.command import as_typed, command, filled, say
 from solidgear.show.options import Run
 
 
@@ -33,6 +34,7 @@ def import_file(
         gearbox = imported(document, name_of(file))
     except RexsError as error:
         raise RexsError(f"{file}: {error}") from None
+    gearbox = with_loadable(gearbox, str(file))
     paths = {out / name: text for name, text in gearbox.files.items()}
     for path in paths:
         if path.exists() and not force:
@@ -41,7 +43,6 @@ def import_file(
             )
     _write(paths)
     first = next(iter(paths))
-    problem = _problem(first, gearbox)
     if run.as_json:
         print(
             json.dumps(
@@ -50,16 +51,11 @@ def import_file(
                     "train": gearbox.has_train,
                     "facts": [*gearbox.facts],
                     "notes": dict(gearbox.notes.groups),
-                    "problem": None if problem is None else str(problem),
                 }
             )
         )
     else:
         _report(gearbox, first)
-    if problem is not None:
-        typer.echo(f"solidgear: {problem}", err=True)
-        raise typer.Exit(NOT_REACHED)
-    if not run.as_json:
         say("", f"Next: solidgear {'check' if gearbox.has_train else 'answer'} {as_typed(first)}")
 
 
@@ -84,15 +80,3 @@ def _report(gearbox: Imported, first: Path) -> None:
         say("", heading)
         for line in lines:
             say(filled(line, "  "))
-
-
-def _problem(path: Path, gearbox: Imported) -> SolidgearError | None:
-    """Return why the files cannot be used as they are; None where they can."""
-    from solidgear.core.scene.file import load  # start-up: for files that were written
-    from solidgear.trains.file.reading import load_train  # start-up: as above
-
-    try:
-        load_train(path) if gearbox.has_train else load(path)
-    except SolidgearError as error:
-        return error
-    return None

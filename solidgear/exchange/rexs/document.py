@@ -18,6 +18,13 @@ from solidgear.exchange.rexs.units import OTHER_NAMES, REST, TYPES, UNIT_OF, UNI
 Value = str | tuple[str, ...] | tuple[tuple[str, ...], ...]
 #: relations that say what is part of what
 ASSEMBLY = ("assembly", "ordered_assembly")
+#: what joins a gear to its shaft, by the relation ``side``, in place of a relation of both
+JOINTS = (
+    "cylindrical_interference_fit",
+    "tapered_interference_fit",
+    "feather_key_connection",
+    "involute_spline_connection",
+)
 
 
 class RexsError(SolidgearError):
@@ -240,7 +247,9 @@ class Document:
 
     @cached_property
     def parts(self) -> dict[int, list[int]]:
-        """Parts of each component, in the order of the file or of the relations."""
+        """Parts of each component, in the order of the file or of the relations; a gear that a fit, a
+        key or a spline holds is a part of its shaft.
+        """
         out: dict[int, list[tuple[int, int]]] = {}
         for relation in self.relations:
             if relation.type not in ASSEMBLY:
@@ -248,7 +257,30 @@ class Document:
             for whole in relation.ids("assembly"):
                 place = relation.order or 0
                 out.setdefault(whole, []).extend((place, part) for part in relation.ids("part"))
+        for joint in self.of_kind(*JOINTS):
+            if (pair := self.joined(joint)) is not None:
+                pairs = out.setdefault(pair[0].id, [])
+                pairs += [(0, pair[1].id)] * (pair[1].id not in (part for _, part in pairs))
         return {whole: [p for _, p in sorted(pairs, key=_place)] for whole, pairs in out.items()}
+
+    def sides_of(self, link: Component) -> tuple[Component, Component] | None:
+        """Return what a bearing, a coupling or a fit joins, inside and outside; None where the file
+        does not say.
+        """
+        for relation in self.related("side", link, "assembly"):
+            inner, outer = relation.ids("inner_part"), relation.ids("outer_part")
+            if inner and outer:
+                return self.components[inner[0]], self.components[outer[0]]
+        return None
+
+    def joined(self, joint: Component) -> tuple[Component, Component] | None:
+        """Return the shaft and the gear that a fit, a key or a spline joins; None for others."""
+        sides = self.sides_of(joint)
+        if sides is None:
+            return None
+        shaft, gear = sides if sides[0].kind == "shaft" else sides[::-1]
+        is_pair = shaft.kind == "shaft" and gear.kind.endswith("_gear")
+        return (shaft, gear) if is_pair else None
 
     def of_kind(self, *kinds: str) -> list[Component]:
         """Return the components of some types, in the order of the file."""

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from dataclasses import dataclass, field
-from math import log
+from math import fsum, log
 
 import numpy as np
 
 from solidgear.exchange.rexs.document import Component
-from solidgear.exchange.rexs.gearbox import Gearbox, PairStage, couplings_of
+from solidgear.exchange.rexs.gearbox import SHARE, Gearbox, PairStage, couplings_of
 from solidgear.exchange.rexs.gears import ratio_of, teeth_of
 from solidgear.exchange.rexs.shafts import Shaft
 
@@ -127,6 +127,8 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
     load, shaft = defining
     turns = turns_from(gearbox, shaft)
     speed = speed_on(gearbox, cases[0], shaft)
+    for case in cases:
+        _doubt_torques(gearbox, case, loads, (load, shaft), turns)
     torques = (torque_in(gearbox, c, load, shaft) for c in cases)
     torque = next((t for t in torques if t), 0.0)
     others = [
@@ -157,6 +159,36 @@ def drive_of(gearbox: Gearbox, cases: list[Case]) -> Drive | None:
         sign = -sign * float(np.sign(turns[shaft.component.id]))
     sides = engine[1], taker[1]
     return Drive(engine[0], taker[0], sides, load, shaft, turns, sign, coupled)
+
+
+def _doubt_torques(
+    gearbox: Gearbox,
+    case: Case,
+    loads: list[tuple[Component, Shaft]],
+    defining: tuple[Component, Shaft],
+    turns: dict[int, float],
+) -> None:
+    """Note torques of a case that do not balance over the ratios, where all loads that transmit torque
+    have one; what leaves the gearbox has either sign, as files differ.
+    """
+    torques: list[tuple[float, float]] = []
+    for load, shaft in loads:
+        if load.flag("transmits_torque") is False or shaft.component.id not in turns:
+            continue
+        torque = torque_in(gearbox, case, load, shaft)
+        if torque is None:
+            return
+        if torque:
+            torques.append((torque * shaft.sign, turns[shaft.component.id]))
+    largest = max((abs(torque * turn) for torque, turn in torques), default=0.0)
+    left = min(abs(fsum(t * w for t, w in torques)), abs(fsum(t * abs(w) for t, w in torques)))
+    if len(torques) > 1 and left > SHARE * largest:
+        load, shaft = defining
+        gearbox.notes.doubt(
+            f"torques ({case.name})",
+            f"do not balance: {left:.6g} N m remain on {shaft.component.title}, perhaps as losses, which "
+            f"a train at rest has not; the torque of {load.title} is taken",
+        )
 
 
 def coupled_to(gearbox: Gearbox, shaft: Shaft, joined: set[int]) -> Coupled | None:

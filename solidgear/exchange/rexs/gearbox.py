@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from solidgear.exchange.rexs.document import Component, Document, RexsError
+from solidgear.exchange.rexs.document import JOINTS, Component, Document, RexsError
 from solidgear.exchange.rexs.frames import Frame, along, frame_of
 from solidgear.exchange.rexs.notes import Notes
 from solidgear.exchange.rexs.shafts import Shaft, is_file_name, plain_name, sections_of
@@ -66,6 +66,8 @@ class Gearbox:
     gears: dict[int, GearOnShaft] = field(default_factory=dict)
     pairs: list[PairStage] = field(default_factory=list)
     planetary: list[PlanetStage] = field(default_factory=list)
+    #: profile shifts that the file leaves open, as they were filled, by the number of the gear
+    shifts: dict[int, float] = field(default_factory=dict)
     reference: Frame | None = None  #: of the shaft whose axes are those of the train
 
     def name_of(self, part: Component, taken: Collection[str], usual: str) -> str:
@@ -92,19 +94,10 @@ class Gearbox:
         return pairs + [(stage.sun.shaft, stage.carrier) for stage in self.planetary]
 
 
-def sides_of(document: Document, link: Component) -> tuple[Component, Component] | None:
-    """Return what a bearing or coupling joins, inside and outside; None where the file does not say."""
-    for relation in document.related("side", link, "assembly"):
-        inner, outer = relation.ids("inner_part"), relation.ids("outer_part")
-        if inner and outer:
-            return document.components[inner[0]], document.components[outer[0]]
-    return None
-
-
 def couplings_of(document: Document, part: Component) -> Iterator[tuple[Component, Component]]:
     """Yield the engaged couplings of a part, each with what is on their other side."""
     for coupling in document.of_kind("coupling", "switchable_coupling"):
-        sides = sides_of(document, coupling)
+        sides = document.sides_of(coupling)
         if sides is None or part not in sides or not is_engaged(document, coupling):
             continue
         yield coupling, sides[1] if sides[0] == part else sides[0]
@@ -131,7 +124,7 @@ def gearbox_of(document: Document, notes: Notes) -> Gearbox:
     Raises
     ------
     RexsError
-        Several gear units, no shaft, sections that are no shaft, a gear in no stage where none is.
+        Several gear units, no shaft, sections that are no shaft, gears of which no stage can be made.
     """
     units = document.of_kind("gear_unit")
     if len(units) > 1:
@@ -139,16 +132,38 @@ def gearbox_of(document: Document, notes: Notes) -> Gearbox:
         raise RexsError(f"holds {len(units)} gear units ({names}); a train is one: export one")
     gearbox = Gearbox(document, notes)
     _add_shafts(gearbox)
+    _note_joints(gearbox)
     _add_gears(gearbox)
     in_planets = _add_planetary(gearbox)
     _add_pairs(gearbox, in_planets)
     if not (gearbox.pairs or gearbox.planetary) and gearbox.gears:
         names = ", ".join(gear.component.label for gear in gearbox.gears.values())
-        raise RexsError(
-            f"no stage joins its gears ({names}): a cylindrical_stage with gear_1 and gear_2 is "
-            "missing, or none that a train here has"
-        )
+        raise RexsError(f"no stage joins its gears ({names}): {_why_no_stage(gearbox)}")
     return gearbox
+
+
+def _why_no_stage(gearbox: Gearbox) -> str:
+    """Return for each stage of the file why it is none here, or that there is none."""
+    reasons = []
+    for component in gearbox.document.components.values():
+        if component.kind.endswith("_stage"):
+            why = gearbox.notes.reasons(component) or ["trains here have no such stage"]
+            reasons.append(f"{component.label}: {'; '.join(why)}")
+    missing = "a cylindrical_stage with gear_1 and gear_2 is missing"
+    return "; ".join(reasons) or missing
+
+
+def _note_joints(gearbox: Gearbox) -> None:
+    """Note how fits, keys and splines are taken."""
+    for joint in gearbox.document.of_kind(*JOINTS):
+        sides = gearbox.document.sides_of(joint)
+        if gearbox.document.joined(joint) is not None:
+            gearbox.notes.assume(joint, "holds its gear to its shaft as if both were one piece")
+        elif sides is None:
+            gearbox.notes.drop(joint, "no relation says between what it is")
+        else:
+            ends = " to ".join(side.label for side in sides)
+            gearbox.notes.drop(joint, f"joins {ends}: trains have no such joint")
 
 
 def _add_shafts(gearbox: Gearbox) -> None:
@@ -172,7 +187,7 @@ def _add_shafts(gearbox: Gearbox) -> None:
         taken = names if document.is_ours else [*names, "shaft"]
         name = gearbox.name_of(shaft, taken, f"shaft_{shaft.id}")
         try:
-            sections, start = sections_of(document, shaft, sign)
+            sections, start = sections_of(document, shaft, sign, notes)
         except RexsError as error:
             gearbox.unsound[shaft.id] = error
             continue
@@ -212,13 +227,15 @@ def _middle(gearbox: Gearbox, gear: Component, shaft: Shaft) -> float:
     """Return the place of the middle of a face on its shaft, m: of the frame of the gear, which is
     there in every version, while the coordinate of 1.0 is that of its beginning.
     """
-    frame, u = frame_of(gearbox.document, gear), gear.number("u_coordinate_on_shaft")
-    width = gear.number("face_width") or 0.0
-    if frame is None or shaft.frame is None:
+    place, u = _place_of_frame(gearbox, gear, shaft), gear.number("u_coordinate_on_shaft")
+    width = gear.number("face_width")
+    if not width or width < 0:
+        reason = "is missing; teeth need a width" if width is None else "must be greater than zero"
+        raise gear.wrong("face_width", reason)
+    if place is None:
         if u is None:
             raise RexsError(f"{gear.label}: neither u_coordinate_on_shaft nor support_vector")
         return shaft.place(u + (width / 2 if gearbox.document.version == "1.0" else 0.0))
-    place = float((frame.origin - shaft.frame.origin) @ shaft.frame.u)
     if u is None or abs(place - u) <= NEAR:
         return shaft.place(place)
     if abs(place - u - width / 2) > NEAR:
@@ -228,6 +245,41 @@ def _middle(gearbox: Gearbox, gear: Component, shaft: Shaft) -> float:
             f"{1e3 * u:.6g} mm by u_coordinate_on_shaft; the first is taken",
         )
     return shaft.place(place)
+
+
+def place_of(
+    gearbox: Gearbox, part: Component, shaft: Shaft, name: str = "u_coordinate_on_shaft"
+) -> float:
+    """Return the coordinate of a load, a mass, a bearing or a coupling on a shaft, m: as the file gives
+    it, or else by the frame of the part; note where these differ.
+
+    Raises
+    ------
+    RexsError
+        A part with neither.
+    """
+    place, u = _place_of_frame(gearbox, part, shaft), part.number(name)
+    if u is None:
+        if place is None:
+            raise part.wrong(name, "is missing, and so is a support_vector of the part")
+        return place
+    if place is not None and abs(place - u) > NEAR:
+        gearbox.notes.doubt(
+            part,
+            f"lies at {1e3 * u:.6g} mm of {shaft.component.title} by {name} and at "
+            f"{1e3 * place:.6g} mm by its support_vector; the first is taken",
+        )
+    return u
+
+
+def _place_of_frame(gearbox: Gearbox, part: Component, shaft: Shaft) -> float | None:
+    """Return the coordinate on a shaft of the origin of a part, m; None where the file places one of
+    them nowhere.
+    """
+    frame = frame_of(gearbox.document, part)
+    if frame is None or shaft.frame is None:
+        return None
+    return float((frame.origin - shaft.frame.origin) @ shaft.frame.u)
 
 
 def _add_pairs(gearbox: Gearbox, in_planets: set[int]) -> None:
@@ -250,7 +302,9 @@ def _add_pairs(gearbox: Gearbox, in_planets: set[int]) -> None:
         frames = first.shaft.frame, second.shaft.frame
         is_bevel = stage.kind == "bevel_stage"
         if not is_bevel and None not in frames and along(frames[0], frames[1], stage) is None:
-            gearbox.notes.drop(stage, "its shafts are not parallel")
+            gearbox.notes.drop(
+                stage, "its shafts cross, and gears of cylindrical stages have parallel ones"
+            )
             continue
         if first.shaft is second.shaft:
             raise RexsError(f"{stage.label}: both gears sit on {first.shaft.component.label}")
@@ -341,7 +395,7 @@ def _try_planetary(gearbox: Gearbox, stage: Component, parts: list[Component], n
 
 def _supports(document: Document, shaft: Component) -> int:
     """Return how many bearings, loads and gears a shaft has."""
-    sides = (sides_of(document, b) for b in document.components.values() if "bearing" in b.kind)
+    sides = (document.sides_of(b) for b in document.components.values() if "bearing" in b.kind)
     bearings = sum(1 for pair in sides if pair is not None and shaft in pair)
     return bearings + len(document.parts_of(shaft, "external_load", "cylindrical_gear"))
 

@@ -12,10 +12,12 @@ from solidgear.exchange.rexs.commented import Sourced, deg, mm, said
 from solidgear.exchange.rexs.document import Component, Document, RexsError
 from solidgear.exchange.rexs.gearbox import NEAR, SHARE, Gearbox, GearOnShaft, PairStage
 from solidgear.exchange.rexs.materials import density_of
+from solidgear.exchange.rexs.units import UNIT_OF, UNITS
 
 #: c_gamma of steel gears (ISO 6336-1), N/m for a metre of face
 USUAL_STIFFNESS = 20e9
 USUAL_PRESSURE_ANGLE = radians(20)
+SHIFT = "addendum_modification_coefficient"
 #: difference of tooth data of both flanks, or of both gears, that digits leave
 SAME = 1e-6
 
@@ -38,14 +40,22 @@ def flank_number(gearbox: Gearbox, gear: Component, name: str) -> tuple[float | 
     if max(values) - min(values) > SAME:
         gearbox.notes.doubt(
             gear,
-            f"{name} of left and right flank are {values[0]:g} and {values[1]:g}: the first is taken",
+            f"{name} of left and right flank are {' and '.join(_in_file(name, v) for v in values[:2])}: "
+            "the first is taken",
         )
     return values[0], f"{next(k for k, v in numbers.items() if v is not None)}: {name}"
 
 
+def _in_file(name: str, value: float) -> str:
+    """Return a number of an attribute in the unit of REXS."""
+    unit = UNIT_OF.get(name, "none")
+    return f"{value / UNITS[unit][1]:.6g}" + (f" {unit}" if unit != "none" else "")
+
+
 def shift_of(gearbox: Gearbox, gear: Component) -> float:
-    """Return the profile shift of a gear, in modules."""
-    return flank_number(gearbox, gear, "addendum_modification_coefficient")[0] or 0.0
+    """Return the profile shift of a gear, in modules: of its flanks, or as it was filled."""
+    shift, _ = flank_number(gearbox, gear, SHIFT)
+    return gearbox.shifts.get(gear.id, 0.0) if shift is None else shift
 
 
 def gear_table(gearbox: Gearbox, gear: GearOnShaft, loaded_side: str = "") -> dict[str, Any]:
@@ -54,21 +64,27 @@ def gear_table(gearbox: Gearbox, gear: GearOnShaft, loaded_side: str = "") -> di
     label = component.label
     if component.kind == "bevel_gear":
         return _bevel_table(component)
-    table: dict[str, Any] = {"teeth": Sourced(_teeth(component), f"{label}: number_of_teeth")}
-    helix = component.number("helix_angle_reference_diameter") or 0.0
+    table: dict[str, Any] = {"teeth": Sourced(teeth_of(component), f"{label}: number_of_teeth")}
+    helix = component.number("helix_angle_reference_diameter")
+    if helix is None:
+        gearbox.notes.assume(
+            component, "no helix_angle_reference_diameter is given: straight teeth"
+        )
     if helix:
         hand = "right" if (helix > 0) else "left"
         table["hand"] = Sourced(hand, f"{label}: sign of helix_angle_reference_diameter")
     if loaded_side:
         table["loaded_side"] = Sourced(loaded_side, "from the direction of the torque")
-    table["module"] = Sourced(mm(_module(component)), f"{label}: normal_module")
+    table["module"] = Sourced(mm(module_of(component)), f"{label}: normal_module")
     if helix:
         angle = Sourced(deg(abs(helix)), f"{label}: helix_angle_reference_diameter")
         table["helix_angle"] = angle
     width = component.number("face_width")
     if width:
         table["face_width"] = Sourced(mm(width), f"{label}: face_width")
-    shift, source = flank_number(gearbox, component, "addendum_modification_coefficient")
+    shift, source = flank_number(gearbox, component, SHIFT)
+    if shift is None:
+        shift, source = shift_of(gearbox, component), "from the centre distance"
     if shift:
         table["profile_shift"] = Sourced(round(shift, 12), source)
     table |= _tips(gearbox, component) | _rack(document, component)
@@ -80,7 +96,7 @@ def gear_table(gearbox: Gearbox, gear: GearOnShaft, loaded_side: str = "") -> di
 
 def _bevel_table(gear: Component) -> dict[str, Any]:
     """Return the table of a bevel gear."""
-    table: dict[str, Any] = {"teeth": Sourced(_teeth(gear), f"{gear.label}: number_of_teeth")}
+    table: dict[str, Any] = {"teeth": Sourced(teeth_of(gear), f"{gear.label}: number_of_teeth")}
     if hand := gear.text("spiral_angle_pitch_direction"):
         table["hand"] = Sourced(hand, f"{gear.label}: spiral_angle_pitch_direction")
     if diameter := gear.number("outer_pitch_diameter"):
@@ -95,14 +111,16 @@ def _bevel_table(gear: Component) -> dict[str, Any]:
     return table
 
 
-def _teeth(gear: Component) -> int:
+def teeth_of(gear: Component) -> int:
+    """Return the teeth of a gear or a ring, above zero."""
     teeth = gear.whole("number_of_teeth")
     if teeth is None or teeth == 0:
         raise gear.wrong("number_of_teeth", "is missing" if teeth is None else "must not be zero")
     return abs(teeth)
 
 
-def _module(gear: Component) -> float:
+def module_of(gear: Component) -> float:
+    """Return the normal module of a gear, m."""
     module = gear.number("normal_module")
     if module is None or module <= 0:
         reason = "is missing" if module is None else "must be greater than zero"
@@ -121,9 +139,9 @@ class Circles:
 
 def circles_of(gearbox: Gearbox, gear: Component) -> Circles:
     """Return the radii of a gear."""
-    module, shift = _module(gear), shift_of(gearbox, gear)
+    module, shift = module_of(gear), shift_of(gearbox, gear)
     helix = gear.number("helix_angle_reference_diameter") or 0.0
-    radius = module * _teeth(gear) / (2 * cos(helix))
+    radius = module * teeth_of(gear) / (2 * cos(helix))
     return Circles(radius, radius + module * (1 + shift), radius - module * (1.25 - shift))
 
 
@@ -133,7 +151,7 @@ def _tips(gearbox: Gearbox, gear: Component) -> dict[str, Any]:
         return {}
     wheel = circles_of(gearbox, gear)
     # the thinnest and the thickest teeth that a rack of any standard gives
-    low, high = 2 * wheel.root, 2 * (wheel.tip + _module(gear))
+    low, high = 2 * wheel.root, 2 * (wheel.tip + module_of(gear))
     if not low < tip < high:
         gearbox.notes.doubt(
             gear,
@@ -260,14 +278,47 @@ def mesh_table(gearbox: Gearbox, stage: PairStage, has_torque: bool) -> dict[str
         "between": Sourced([f"{g.shaft.name}.{g.name}" for g in stage.gears], label),
         "shaft_angle": 0,
     }
-    angle, source = flank_number(gearbox, a, "normal_pressure_angle")
-    if angle is None:
-        angle, source = USUAL_PRESSURE_ANGLE, "assumed: ISO 53"
-        gearbox.notes.assume(a, "its normal_pressure_angle is 20 deg")
+    _refuse_one_hand(stage)
+    angle, source = pressure_angle(gearbox, stage)
     table["pressure_angle"] = Sourced(deg(angle), source)
     table |= _where(gearbox, stage)
     table |= _stiffness(gearbox, stage, has_torque)
     return table
+
+
+def _refuse_one_hand(stage: PairStage) -> None:
+    """Refuse two helical gears on parallel shafts that lean the same way."""
+    name = "helix_angle_reference_diameter"
+    a, b = (gear.component for gear in stage.gears)
+    first, second = (gear.number(name) or 0.0 for gear in (a, b))
+    if first * second > 0:
+        hand = "right" if first > 0 else "left"
+        raise b.wrong(
+            name,
+            f"{a.label} and this gear are both {hand}-handed, and {stage.component.label} on parallel "
+            "shafts needs one of each hand: change the sign of one",
+        )
+
+
+def pressure_angle(gearbox: Gearbox, stage: PairStage) -> tuple[float, str]:
+    """Return the normal pressure angle of a stage, rad, and where it came from; note gears that differ
+    and gears without one.
+    """
+    name = "normal_pressure_angle"
+    gears = [gear.component for gear in stage.gears]
+    rows = [flank_number(gearbox, gear, name) for gear in gears]
+    angles = [(angle, source) for angle, source in rows if angle is not None]
+    if not angles:
+        gearbox.notes.assume(stage.component, f"its {name} is 20 deg")
+        return USUAL_PRESSURE_ANGLE, "assumed: ISO 53"
+    if len(angles) == 2 and abs(angles[0][0] - angles[1][0]) > SAME:
+        words = " and ".join(_in_file(name, angle) for angle, _ in angles)
+        gearbox.notes.doubt(
+            stage.component,
+            f"{name} of {gears[0].title} and {gears[1].title} are {words}, and such teeth do not mesh: "
+            "the first is taken",
+        )
+    return angles[0]
 
 
 def _bevel_mesh(stage: PairStage) -> dict[str, Any]:
@@ -292,12 +343,12 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
     first, second = stage.gears
     label, notes = stage.component.label, gearbox.notes
     out: dict[str, Any] = {}
-    distance = stage.component.number("center_distance")
+    distance, source = centre_distance(gearbox, stage)
     turned = stage.component.number("rotating_angle_around_neg_u_axis")
     frames = first.shaft.frame, second.shaft.frame
     if frames[0] is None or frames[1] is None:
         if distance:
-            out["centre_distance"] = Sourced(mm(distance), f"{label}: center_distance")
+            out["centre_distance"] = Sourced(mm(distance), source)
         if turned is not None:
             azimuth = (pi - turned + pi) % (2 * pi) - pi
             source = f"{label}: rotating_angle_around_neg_u_axis"
@@ -309,16 +360,14 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
         raise RexsError(
             f"{label}: the axes of {first.component.label} and {second.component.label} are one"
         )
-    if distance and abs(across - distance) > SHARE * distance:
+    due = distance or across
+    if abs(across - due) > SHARE * due:
         notes.doubt(
             stage.component,
-            f"center_distance {1e3 * distance:.6g} mm, and its shafts lie {1e3 * across:.6g} mm apart: "
+            f"center_distance {1e3 * due:.6g} mm, and its shafts lie {1e3 * across:.6g} mm apart: "
             "the first is taken",
         )
-    due = distance or across
-    out["centre_distance"] = Sourced(
-        mm(round(due, 12)), f"{label}: center_distance" if distance else "from the places of shafts"
-    )
+    out["centre_distance"] = Sourced(mm(round(due, 12)), source)
     azimuth = atan2(apart[2], -apart[0])
     if abs(azimuth) > 1e-9:
         # half a turn is one place, whatever the sign of a zero
@@ -328,6 +377,19 @@ def _where(gearbox: Gearbox, stage: PairStage) -> dict[str, Any]:
         place = [mm(-due), mm(round(apart[1], 9)), mm(0.0)]
         out["gear_position"] = Sourced(place, "faces that do not lie beside each other")
     return out
+
+
+def centre_distance(gearbox: Gearbox, stage: PairStage) -> tuple[float | None, str]:
+    """Return the centre distance of a stage, m, and where it came from: that of the file, or between
+    its shafts; None where the file has neither.
+    """
+    if distance := stage.component.number("center_distance"):
+        return distance, f"{stage.component.label}: center_distance"
+    first, second = stage.gears
+    if first.shaft.frame is None or second.shaft.frame is None:
+        return None, ""
+    apart = gear_places(gearbox, second) - gear_places(gearbox, first)
+    return hypot(apart[0], apart[2]), "the places of shafts"
 
 
 def gear_places(gearbox: Gearbox, gear: GearOnShaft) -> np.ndarray:
@@ -373,9 +435,4 @@ def mesh_stiffness(gearbox: Gearbox, stage: Component, width: float, key: str) -
 
 def ratio_of(first: GearOnShaft, second: GearOnShaft) -> float:
     """Return the teeth of the second gear over those of the first."""
-    return _teeth(second.component) / _teeth(first.component)
-
-
-def teeth_of(gear: Component) -> int:
-    """Return the teeth of a gear or a ring, above zero."""
-    return _teeth(gear)
+    return teeth_of(second.component) / teeth_of(first.component)

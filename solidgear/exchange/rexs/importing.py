@@ -7,13 +7,14 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from solidgear.exchange.rexs.commented import plain, toml_of, wrapped
+from solidgear.exchange.rexs.commented import toml_of, wrapped
 from solidgear.exchange.rexs.document import Component, Document
 from solidgear.exchange.rexs.drive import cases_of, coupled_to, drive_of, ordered, turns_from
 from solidgear.exchange.rexs.gearbox import Gearbox, couplings_of, gearbox_of
 from solidgear.exchange.rexs.gears import gear_table, mesh_table
 from solidgear.exchange.rexs.notes import Notes, unread
 from solidgear.exchange.rexs.planets import stage_table
+from solidgear.exchange.rexs.profile_shifts import fill_shifts
 from solidgear.exchange.rexs.rest import read_rest, restored
 from solidgear.exchange.rexs.running import load_table, operation_tables, rotor_tables
 from solidgear.exchange.rexs.scenes import scene_table
@@ -25,7 +26,7 @@ class Imported:
     """Files of a gearbox by name, the train first where there is one, and what is to be known."""
 
     files: dict[str, str]
-    tables: dict[str, Any]
+    tables: dict[str, Any]  #: of each file, with the source of each value
     notes: Notes
     facts: tuple[str, ...]
     has_train: bool = True
@@ -50,6 +51,7 @@ def imported(document: Document, name: str) -> Imported:
     for label, reason in unread(document):
         notes.drop(label, reason)
     shafts = _in_train(gearbox)
+    fill_shifts(gearbox)
     cases = cases_of(gearbox)
     drive = drive_of(gearbox, cases) if shafts else None
     files: dict[str, Any] = {}
@@ -101,9 +103,7 @@ def imported(document: Document, name: str) -> Imported:
         train_file = f"{name}_train.toml"
     texts = {train_file: toml_of(train, [*head, *_head(notes)])}
     texts |= {file: toml_of(tables, head) for file, tables in files.items()}
-    return Imported(
-        texts, {train_file: plain(train)} | plain(files), notes, _facts(gearbox, shafts)
-    )
+    return Imported(texts, {train_file: train} | files, notes, _facts(gearbox, shafts))
 
 
 def _restored(gearbox: Gearbox, tables: dict[str, Any], component: Component) -> dict[str, Any]:

@@ -24,6 +24,8 @@ def density_of(gearbox: Gearbox, *parts: Component) -> tuple[float, str]:
     """Return the density of parts by their material, kg/m^3, and where it came from."""
     material = material_of(gearbox, *parts)
     density = None if material is None else material.number("density")
+    if material is not None and density is None:
+        gearbox.notes.assume(material, "has no density: that of steel is taken")
     if material is None or density is None:
         return STEEL.density, "assumed: steel"
     return density, f"{material.label}: density"

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass, field
 
-from solidgear.exchange.rexs.document import Component, Document
+from solidgear.exchange.rexs.document import JOINTS, Component, Document
 from solidgear.exchange.rexs.units import OTHER_NAMES, REST
 
 #: attributes that are read, by type; what is where is said by the others of :mod:`units`
@@ -84,6 +84,10 @@ READ_OURS = {
     "bevel_stage": "shaft_angle nominal_design_pressure_angle_drive",
 }
 READ["ring_gear"] = READ["cylindrical_gear"]
+READ |= {
+    joint: "support_vector u_axis_vector w_axis_vector reference_component_for_position"
+    for joint in JOINTS
+}
 READ["switchable_coupling"] = READ["coupling"]
 READ["rolling_bearing_with_catalog_geometry"] = (
     READ["concept_bearing"]
@@ -126,6 +130,10 @@ class Notes:
     def ask(self, reason: str) -> None:
         """Note what only the user knows."""
         self.unknown[reason] = []
+
+    def reasons(self, component: Component) -> list[str]:
+        """Return why a component is left out."""
+        return [reason for reason, labels in self.dropped.items() if component.title in labels]
 
     @property
     def groups(self) -> list[tuple[str, list[str]]]:

@@ -18,10 +18,11 @@ from solidgear.exchange.rexs.gearbox import (
     Gearbox,
     PlanetStage,
     couplings_of,
-    sides_of,
+    place_of,
     stage_gears,
 )
 from solidgear.exchange.rexs.gears import (
+    SHIFT,
     USUAL_PRESSURE_ANGLE,
     circles_of,
     flank_number,
@@ -65,6 +66,7 @@ def stage_table(gearbox: Gearbox, stage: PlanetStage, has_torque: bool) -> dict[
     angle, source = flank_number(gearbox, stage.sun.component, "normal_pressure_angle")
     if angle is None:
         angle, source = USUAL_PRESSURE_ANGLE, "assumed: ISO 53"
+        notes.assume(stage.component, "its normal_pressure_angle is 20 deg")
     mesh: dict[str, Any] = {}
     widths = [g.number("face_width") or 0.0 for g in (stage.sun.component, first, stage.ring)]
     width = min(w for w in widths if w) if any(widths) else 0.0
@@ -105,6 +107,8 @@ def _is_of_ring(gearbox: Gearbox, part: Component) -> bool:
 def _refuse_shifts(gearbox: Gearbox, stage: PlanetStage) -> None:
     gears = [stage.sun.component, *(p.component for p in stage.planets), stage.ring]
     for gear in gears:
+        if flank_number(gearbox, gear, SHIFT)[0] is None:
+            gearbox.notes.assume(gear, f"no {SHIFT} is given: 0")
         if shift_of(gearbox, gear):
             raise RexsError(
                 f"{gear.label} of {stage.component.label}: has a profile shift, and planetary stages "
@@ -193,16 +197,16 @@ def _pin(gearbox: Gearbox, stage: PlanetStage) -> dict[str, Any]:
     bearings = [
         b
         for b in document.components.values()
-        if "bearing" in b.kind and planet.shaft.component in (sides_of(document, b) or ())
+        if "bearing" in b.kind and planet.shaft.component in (document.sides_of(b) or ())
     ]
     if not bearings:
         raise RexsError(f"{planet.component.label}: its shaft has no bearing on a pin")
     arms, compliance, axial = [], [], 0.0
     for bearing in bearings:
-        sides = sides_of(document, bearing)
+        sides = document.sides_of(bearing)
         side = "outer" if sides and sides[1] == planet.shaft.component else "inner"
-        u = bearing.number(f"u_coordinate_on_shaft_{side}_side")
-        arms.append((planet.shaft.place(u) if u is not None else planet.y) - planet.y)
+        u = place_of(gearbox, bearing, planet.shaft, f"u_coordinate_on_shaft_{side}_side")
+        arms.append(planet.shaft.place(u) - planet.y)
         stiffness = bearing.number("radial_stiffness") or RIGID
         compliance.append(1 / min(stiffness, RIGID))
         if absorbed(bearing, notes) != "no_direction":
@@ -240,7 +244,7 @@ def _pin_springs(bearing: Component) -> dict[str, Any]:
 
 
 def _pin_of(gearbox: Gearbox, stage: PlanetStage, bearings: list[Component]) -> Shaft | None:
-    sides = [side.id for b in bearings for side in sides_of(gearbox.document, b) or ()]
+    sides = [side.id for b in bearings for side in gearbox.document.sides_of(b) or ()]
     return next((pin for pin in stage.pins if pin.component.id in sides), None)
 
 
@@ -255,11 +259,10 @@ def _pin_compliance(
     places = [middle + arm + shift for arm in arms]
     ends = []
     for coupling, _ in couplings_of(document, pin.component):
-        sides = sides_of(document, coupling)
+        sides = document.sides_of(coupling)
         side = "inner" if sides and sides[0] == pin.component else "outer"
-        u = coupling.number(f"u_coordinate_on_shaft_{side}_side")
-        if u is not None:
-            ends.append(u - pin.first)
+        u = place_of(gearbox, coupling, pin, f"u_coordinate_on_shaft_{side}_side")
+        ends.append(u - pin.first)
     ends = ends or [0.0, pin.length]
     outer = pin.mean_outer(0.0, pin.length)
     bore = pin.sections[0].inner[0]

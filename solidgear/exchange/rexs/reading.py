@@ -316,6 +316,8 @@ def _json_attribute(table: Mapping[str, Any]) -> Attribute:
     name, unit = str(table.get("id", "")), str(table.get("unit") or "")
     key = next((k for k in table if k not in ("id", "unit")), "")
     value = table.get(key)
+    if value is False and name.endswith("_vector"):
+        value = None  # an empty array, as some writers have it
     if isinstance(value, dict) and key.endswith("_coded"):
         numbers = _decoded(str(value.get("code")), str(value.get("value", "")), name)
         if "matrix" not in key:
@@ -361,12 +363,8 @@ def _document(
         by_id[component.id] = component
     if not by_id:
         raise RexsError("holds no components")
-    rows = tuple(relations)
-    numbers = [relation.id for relation in rows]
-    if len(set(numbers)) < len(numbers):
-        twice = next(n for k, n in enumerate(numbers) if n in numbers[:k])
-        raise RexsError(f"relation {twice} is there twice; numbers are given once")
-    return Document(version, by_id, rows, tuple(spectra), dict(header))
+    # nothing refers to a relation, so that its number may be there twice
+    return Document(version, by_id, tuple(relations), tuple(spectra), dict(header))
 
 
 def _with_attributes(

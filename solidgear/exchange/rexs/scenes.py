@@ -10,7 +10,7 @@ from solidgear.exchange.rexs.bearings import bearing_table, width_of
 from solidgear.exchange.rexs.commented import Sourced, mm, said
 from solidgear.exchange.rexs.document import Component, RexsError
 from solidgear.exchange.rexs.drive import Case, Drive
-from solidgear.exchange.rexs.gearbox import Gearbox, sides_of
+from solidgear.exchange.rexs.gearbox import Gearbox, place_of
 from solidgear.exchange.rexs.materials import material_table
 from solidgear.exchange.rexs.planets import carried_masses, pins_at, pins_middle, point_of
 from solidgear.exchange.rexs.running import load_vector, lubrication_table, planets_of
@@ -158,7 +158,7 @@ def _seat_of(gearbox: Gearbox, bearing: Component, shaft: Shaft) -> float | None
     """Return the coordinate of a bearing on a shaft that it carries, m; None where it carries another:
     one between two shafts that turn stands under that with fewer bearings in the casing.
     """
-    sides = sides_of(gearbox.document, bearing)
+    sides = gearbox.document.sides_of(bearing)
     if sides is None:
         gearbox.notes.drop(bearing, "no relation says between what it stands")
         return None
@@ -179,14 +179,11 @@ def _seat_of(gearbox: Gearbox, bearing: Component, shaft: Shaft) -> float | None
         )
     elif other.kind != "gear_casing":
         gearbox.notes.assume(bearing, f"stands on the ground, not in {other.title}")
-    u = bearing.number(f"u_coordinate_on_shaft_{side}_side")
-    if u is None:
-        raise bearing.wrong(f"u_coordinate_on_shaft_{side}_side", "is missing")
-    return u
+    return place_of(gearbox, bearing, shaft, f"u_coordinate_on_shaft_{side}_side")
 
 
 def _in_casing(gearbox: Gearbox, shaft: Component) -> int:
-    pairs = (sides_of(gearbox.document, b) for b in gearbox.document.of_kind(*BEARINGS))
+    pairs = (gearbox.document.sides_of(b) for b in gearbox.document.of_kind(*BEARINGS))
     return sum(
         1 for pair in pairs if pair and shaft in pair and any(p.kind == "gear_casing" for p in pair)
     )
@@ -220,9 +217,7 @@ def _ports(
         pushes = any(np.any(force) or np.any(moment) for force, moment in vectors)
         if not (pushes or load.id in driving or gearbox.document.is_ours):
             continue
-        u = load.number("u_coordinate_on_shaft")
-        if u is None:
-            raise load.wrong("u_coordinate_on_shaft", "is missing")
+        u = place_of(gearbox, load, shaft)
         if (name := places.get(u)) is None:
             name = places[u] = gearbox.name_of(load, names, f"load_{load.id}")
             names.append(name)
@@ -232,11 +227,9 @@ def _ports(
     for number, behind in () if drive is None else drive.coupled.items():
         if behind.inside is not shaft:
             continue
-        sides = sides_of(gearbox.document, behind.coupling)
+        sides = gearbox.document.sides_of(behind.coupling)
         side = "inner" if sides and sides[0] == shaft.component else "outer"
-        u = behind.coupling.number(f"u_coordinate_on_shaft_{side}_side")
-        if u is None:
-            raise behind.coupling.wrong(f"u_coordinate_on_shaft_{side}_side", "is missing")
+        u = place_of(gearbox, behind.coupling, shaft, f"u_coordinate_on_shaft_{side}_side")
         name = gearbox.name_of(behind.coupling, names, f"coupling_{behind.coupling.id}")
         names.append(name)
         ports.append(_port(shaft, name, behind.coupling, shaft.place(u), shaft.length / 20))
@@ -266,12 +259,14 @@ def _masses(gearbox: Gearbox, shaft: Shaft) -> list[dict[str, Any]]:
     out: list[dict[str, Any]] = []
     names: list[str] = []
     for mass in gearbox.document.parts_of(shaft.component, "additional_mass"):
-        size, u = mass.number("mass_of_component"), mass.number("u_coordinate_on_shaft")
-        seat = None if u is None else shaft.seat(shaft.place(u), mass.number("length") or 0.01)
+        size, u = mass.number("mass_of_component"), place_of(gearbox, mass, shaft)
+        seat = shaft.seat(shaft.place(u), mass.number("length") or 0.01)
         if not size or seat is None:
             gearbox.notes.drop(mass, "has no mass_of_component, or lies off its shaft")
             continue
         inertia = [mass.number(f"moment_of_inertia_{axis}_axis") or 0.0 for axis in "wuv"]
+        if not any(inertia):
+            gearbox.notes.assume(mass, "no moment_of_inertia is given: a mass at a point")
         names.append(gearbox.name_of(mass, names, f"mass_{mass.id}"))
         out.append(
             {

@@ -12,9 +12,10 @@ import numpy as np
 
 from solidgear.exchange.rexs.document import Component, Document, RexsError
 from solidgear.exchange.rexs.frames import Frame
+from solidgear.exchange.rexs.notes import Notes
 
-#: gap between sections, m, that digits leave
-TOUCH = 1e-6
+#: gap between sections, m, that digits leave, and that lengths and places in tenths of a millimetre do
+TOUCH, ROUNDED_GAP = 1e-6, 1e-4
 #: letters of a name, and of one that a file had before
 LONGEST, MOST_LETTERS = 32, 100
 
@@ -117,8 +118,11 @@ class Shaft:
         return float(np.sqrt(squares / weight)) if weight else 0.0
 
 
-def sections_of(document: Document, shaft: Component, sign: int) -> tuple[list[Section], float]:
-    """Return the sections of a shaft in the order of y, and u where they begin, m.
+def sections_of(
+    document: Document, shaft: Component, sign: int, notes: Notes
+) -> tuple[list[Section], float]:
+    """Return the sections of a shaft in the order of y, and u where they begin, m; note gaps that are
+    closed, and sections without a bore.
 
     Raises
     ------
@@ -134,11 +138,22 @@ def sections_of(document: Document, shaft: Component, sign: int) -> tuple[list[S
         start = part.number("u_coordinate_on_shaft")
         start = end if start is None else start
         end = start + length
-        pieces.append((start, end, part, _ends(part, "outer"), _ends(part, "inner")))
+        inner = _ends(part, "inner")
+        if any(part.number(f"inner_diameter_{end}") is None for end in ("begin", "end")):
+            notes.assume(part, "has no bore where no inner_diameter is given")
+        pieces.append((start, end, part, _ends(part, "outer"), inner))
     pieces.sort(key=lambda piece: piece[0])
-    for before, after in zip(pieces, pieces[1:]):
+    for k, (before, after) in enumerate(zip(pieces, pieces[1:])):
         gap = after[0] - before[1]
-        if abs(gap) > TOUCH:
+        if TOUCH < abs(gap) <= ROUNDED_GAP < after[0] - before[0]:
+            way = "before" if gap > 0 else "behind"
+            notes.doubt(
+                before[2],
+                f"ends {1e3 * abs(gap):.6g} mm {way} the place where {after[2].title} begins: it is "
+                "made to end there",
+            )
+            pieces[k] = (before[0], after[0], *before[2:])
+        elif abs(gap) > TOUCH:
             kind = "leaves a gap of" if gap > 0 else "overlaps by"
             raise RexsError(
                 f"{after[2].label} of {shaft.label}: begins at {1e3 * after[0]:.6g} mm and "

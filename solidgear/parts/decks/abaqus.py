@@ -11,7 +11,15 @@ import numpy as np
 
 from solidgear.core.meshing.quality import MeshError
 from solidgear.core.scene.file_materials import FileMaterial
-from solidgear.parts.decks.deck import Deck, Lines, coordinates, integer, text_of, wrong_node_count
+from solidgear.parts.decks.deck import (
+    FACES,
+    Deck,
+    Lines,
+    coordinates,
+    integer,
+    text_of,
+    wrong_node_count,
+)
 from solidgear.parts.decks.left_out import KEYWORDS, OTHER, TYPES, LeftOut, sort_of
 
 #: kinds of cells by the nodes of a continuum element, in meshio's words
@@ -26,14 +34,16 @@ CONTINUUM = {
     20: "hexahedron20",
     27: "hexahedron27",
 }
-#: corners of the faces S1, S2 and so on of elements
-FACES = {
-    "tetra": ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
-    "hexahedron": (
-        *((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1)),
-        *((1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
+#: keywords with data that change the mesh, and what to do
+CHANGING = {
+    **dict.fromkeys(("SYSTEM", "NMAP"), "moves or turns nodes: write them in x, y, z"),
+    **dict.fromkeys(
+        ("NGEN", "NFILL", "NCOPY", "ELGEN", "ELCOPY"),
+        "makes nodes or elements that the file does not list: write them out",
     ),
 }
+#: options of keywords that are read, or refused by name
+OPTIONS = {"NODE": ("NSET", "INPUT", "SYSTEM"), "ELEMENT": ("TYPE", "ELSET", "INPUT")}
 #: entries that a line of data holds at most; a line that goes on after them needs no comma
 FULL = 16
 #: a set with a larger share of all nodes is no place where something acts
@@ -56,10 +66,11 @@ def read(path: str) -> Deck:
     text = text_of(path)
     blocks = list(_blocks(text))
     _refuse_includes(blocks)
+    _refuse_changes(blocks)
     if not any(b.keyword == "NODE" for b in blocks):
         raise MeshError("cannot be read as Abaqus: it holds no *NODE")
     scope, meshes = "", {"": Lines()}
-    instances: dict[str, int] = {}
+    instances: dict[str, list[_Block]] = {}
     later: list[
         tuple[str, _Block]
     ] = []  # they refer to nodes and elements, by the part they are in
@@ -72,7 +83,7 @@ def read(path: str) -> Deck:
             scope = ""
         elif block.keyword == "INSTANCE":
             part = block.parameters.get("PART", "")
-            instances[part] = instances.get(part, 0) + 1
+            instances.setdefault(part, []).append(block)
         elif block.keyword == "NODE":
             _add_nodes(meshes[scope], block)
         elif block.keyword == "ELEMENT":
@@ -82,17 +93,18 @@ def read(path: str) -> Deck:
         else:
             later.append((scope, block))
     name, lines = _only_part(meshes)
-    if instances.get(name, 0) > 1:
-        raise MeshError(
-            f"part {name} is there {instances[name]} times in the assembly: write one part"
-        )
+    places = instances.get(name, [])
+    if len(places) > 1:
+        raise MeshError(f"part {name} is there {len(places)} times in the assembly: write one part")
+    for block in places:
+        lines.move(*_position(block))
     of_part = [block for scope, block in later if scope in ("", name)]
     _add_sets(lines, of_part)
     _refuse_cut_off(text, lines)
     _count_left_out(lines.left_out, not_solid, [block for _, block in later])
     _add_materials(lines, [block for _, block in later])
     deck = lines.deck()
-    return replace(deck, patches=dict(_surfaces(lines, of_part, deck)))
+    return replace(deck, patches={**deck.patches, **dict(_surfaces(lines, of_part, deck))})
 
 
 def _blocks(text: str) -> Iterator[_Block]:
@@ -129,6 +141,45 @@ def _refuse_includes(blocks: list[_Block]) -> None:
             )
 
 
+def _refuse_changes(blocks: list[_Block]) -> None:
+    """Refuse keywords that move nodes or make nodes and elements that the file does not list, and
+    options of nodes and elements that are not read.
+    """
+    for block in blocks:
+        if block.keyword in CHANGING and block.data:
+            raise MeshError(f"line {block.line}: *{block.keyword} {CHANGING[block.keyword]}")
+        known = OPTIONS.get(block.keyword, block.parameters)
+        for option in block.parameters:
+            if option not in known:
+                raise MeshError(
+                    f"line {block.line}: *{block.keyword} with {option} is not read here"
+                )
+
+
+def _position(instance: _Block) -> tuple[np.ndarray, np.ndarray]:
+    """Return the turn (3, 3) and the shift (3,) of a part in its assembly: by a first line of data, and
+    then about an axis through two points by an angle in degrees.
+    """
+    rows = []
+    for line, text in instance.data:
+        entries = [entry for entry in text.split(",") if entry.strip()]
+        rows.append(coordinates(entries, line, 0))
+    shift, turn = np.zeros(3), np.eye(3)
+    if rows and len(rows[0]) == 3:
+        shift = np.array(rows.pop(0))
+    if not rows:
+        return turn, shift
+    if len(rows) > 1 or len(rows[0]) != 7:
+        raise MeshError(
+            f"line {instance.line}: *INSTANCE is placed by 3 numbers, and 7 of a rotation"
+        )
+    a, b, angle = np.array(rows[0][:3]), np.array(rows[0][3:6]), np.radians(rows[0][6])
+    x, y, z = (b - a) / max(float(np.linalg.norm(b - a)), np.finfo(float).tiny)
+    cross = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+    turn = np.eye(3) + np.sin(angle) * cross + (1 - np.cos(angle)) * cross @ cross
+    return turn, turn @ (shift - a) + a
+
+
 def _parameters(text: str) -> dict[str, str]:
     pairs = (entry.partition("=") for entry in text.split(",") if entry.strip())
     return {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
@@ -142,6 +193,8 @@ def _add_nodes(lines: Lines, block: _Block) -> None:
     for line, text in block.data:
         entries = text.rstrip(",").split(",")
         number = integer(entries[0], line, "the number of a node")
+        if name := block.parameters.get("NSET"):
+            lines.node_sets.setdefault(name, set()).add(number)
         if len(entries) < 4:
             raise MeshError(
                 f"line {line}: node {number} has {len(entries) - 1} coordinates where 3 are wanted"
@@ -306,7 +359,10 @@ def _add_sets(lines: Lines, blocks: list[_Block]) -> None:
             if not {"INSTANCE", "GENERATE"} & set(block.parameters):
                 lines.listed += [(set_name, n, line) for n, line in _numbered(block)]
         elif block.keyword == "NSET":
-            nodes = list(_members(block, {}))
+            nodes = list(_members(block, {k: [*v] for k, v in lines.node_sets.items()}))
+            if "ELSET" in block.parameters:
+                nodes += lines.nodes_of(lines.sets.get(block.parameters["ELSET"], ()))
+            lines.node_sets.setdefault(block.parameters.get("NSET", ""), set()).update(nodes)
             if len(nodes) <= max(1, LOCAL * len(lines.nodes)):
                 lines.mentioned.update(nodes)
         elif block.keyword in ("SOLID SECTION", "MASS", "ROTARY INERTIA"):
@@ -347,11 +403,15 @@ def _surfaces(lines: Lines, blocks: list[_Block], deck: Deck) -> Iterator[tuple[
         patch = []
         for _, text in block.data:
             owner, _, face = (word.strip().upper() for word in text.partition(","))
-            if not (face[:1] == "S" and face[1:].isdigit() and 0 < int(face[1:]) <= len(faces)):
+            if not face:  # all that lie on the surface
+                chosen = [list(corners) for corners in faces]
+            elif face[:1] == "S" and face[1:].isdigit() and 0 < int(face[1:]) <= len(faces):
+                chosen = [list(faces[int(face[1:]) - 1])]
+            else:
                 continue
             elements = [int(owner)] if owner.isdigit() else sets.get(owner, ())
-            corners = list(faces[int(face[1:]) - 1])
-            patch += [deck.cells[corners, place[n]] for n in elements if n in place]
+            places = [place[n] for n in elements if n in place]
+            patch += [deck.cells[corners, k] for k in places for corners in chosen]
         if patch:
             yield block.parameters.get("NAME", f"line {block.line}"), np.array(patch).T
 

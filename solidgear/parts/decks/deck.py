@@ -42,6 +42,14 @@ KINDS = {
     "hexahedron": "hex8",
     "hexahedron20": "hex20",
 }
+#: corners of the faces of elements, in the order S1, S2 and so on of Abaqus
+FACES = {
+    "tetra": ((0, 1, 2), (0, 3, 1), (1, 3, 2), (2, 3, 0)),
+    "hexahedron": (
+        *((0, 1, 2, 3), (4, 7, 6, 5), (0, 4, 5, 1)),
+        *((1, 5, 6, 2), (2, 6, 7, 3), (3, 7, 4, 0)),
+    ),
+}
 #: how kinds of cells of a volume begin
 VOLUMES = ("wedge", "pyramid", "hexahedron", "tetra", "polyhedron", "VTK_LAGRANGE")
 
@@ -155,6 +163,7 @@ class Lines:
         self.material_sets: set[str] = set()  #: groups that stand for materials
         #: name of a group, number of an element that it lists one by one, and the line
         self.listed: list[tuple[str, int, int]] = []
+        self.node_sets: dict[str, set[int]] = {}  #: numbers of nodes by the name of their group
         self.left_out = LeftOut()  #: all that the file carries beside elements of volumes
         self.materials: list[FileMaterial] = []  #: of groups
         self.of_material: dict[str, str] = {}  #: name of the material by that of its group
@@ -232,8 +241,34 @@ class Lines:
             numbers=numbers,
             lines=np.array([e.line for e in self.elements]),
             remarks=tuple(filter(None, remarks)),
+            patches=self._faces_of_node_sets(kind, cells),
             materials=tuple(self.materials),
         )
+
+    def _faces_of_node_sets(self, kind: str, cells: np.ndarray) -> dict[str, np.ndarray]:
+        """Return the corners of the faces of elements whose corners are all in a set of nodes, by the
+        name of the set: those on the surface are a patch, such as the foot that a program holds.
+        """
+        faces = np.array(FACES[kind.rstrip("0123456789")])
+        out = {}
+        for name, nodes in self.node_sets.items():
+            inside = np.zeros(len(self.places), bool)
+            inside[[self.nodes[n][0] for n in nodes if n in self.nodes]] = True
+            if inside[cells].all():
+                continue  # a name for the whole mesh is none of a place
+            corners = [cells[face][:, inside[cells[face]].all(axis=0)] for face in faces]
+            if any(c.size for c in corners):
+                out[name] = np.hstack(corners)
+        return out
+
+    def move(self, turn: np.ndarray, shift: np.ndarray) -> None:
+        """Turn all nodes by (3, 3), and shift them by (3,)."""
+        self.places = [tuple(turn @ place + shift) for place in np.array(self.places, float)]
+
+    def nodes_of(self, elements: Iterable[int]) -> list[int]:
+        """Return the nodes of elements by their numbers."""
+        by_number = {e.number: e.nodes for e in self.elements}
+        return [node for number in elements for node in by_number.get(number, ())]
 
     def place(self, node: int) -> tuple[float, ...] | None:
         """Return the coordinates of a node; None where the file has no such node."""

@@ -42,13 +42,20 @@ def read(path: str) -> Deck:
     solids: dict[str, str] = {}
     materials: dict[str, Card] = {}
     masses: list[tuple[float, int]] = []
-    for card in cards(text_of(path)):
+    in_deck = list(cards(text_of(path)))
+    usual = next((card.fields[1] for card in in_deck if card.name == "GRDSET"), "")
+    weights = [
+        c.fields[1] for c in in_deck if c.name == "PARAM" and c.fields[0].upper() == "WTMASS"
+    ]
+    # by which the solver multiplies all masses, such as 1 / g where densities are weights
+    unit = (_plain(weights[-1]) if weights else None) or 1.0
+    for card in in_deck:
         sort = sort_of(card.name, CARDS)
         if sort is not None:
             lines.left_out.add(sort, card.name)
-            masses += _mass(card)
+            masses += [(unit * mass, node) for mass, node in _mass(card)]
         if card.name == "GRID":
-            _add_node(lines, card)
+            _add_node(lines, card, usual)
         elif card.name in SOLIDS:
             _add_solid(lines, card)
         elif card.name == "INCLUDE":
@@ -67,7 +74,7 @@ def read(path: str) -> Deck:
         (mass for mass, _ in masses), lines.place(masses[0][1]) if masses else None
     )
     lines.materials = [
-        _material(materials[number], group)
+        _material(materials[number], group, unit)
         for group, number in solids.items()
         if number in materials and group in lines.sets
     ]
@@ -131,12 +138,14 @@ def _number(text: str) -> float:
     return float(plain)
 
 
-def _add_node(lines: Lines, card: Card) -> None:
+def _add_node(lines: Lines, card: Card, usual: str) -> None:
+    """Add a node, in the system that GRDSET gives where the GRID names none."""
     number = integer(card.fields[0], card.line, "the number of a GRID")
-    if card.fields[1] not in ("", "0"):
+    system = card.fields[1] or usual
+    if system not in ("", "0"):
         raise MeshError(
-            f"line {card.line}: GRID {number} is given in system {card.fields[1]}: write all nodes "
-            "in the basic system"
+            f"line {card.line}: GRID {number} is given in system {system}: write all nodes in the "
+            "basic system"
         )
     try:
         # a blank field is zero, a line that should go on is none
@@ -167,15 +176,21 @@ def _mass(card: Card) -> list[tuple[float, int]]:
     return [(_plain(mass) or 0.0, int(node) if node.isdigit() else 0)]
 
 
-def _material(card: Card, group: str) -> FileMaterial:
-    """Return the material of a MAT1, whose Poisson's ratio may follow from the shear modulus."""
+def _material(card: Card, group: str, unit: float) -> FileMaterial:
+    """Return the material of a MAT1, whose Poisson's ratio may follow from the shear modulus and whose
+    density counts in a unit of mass.
+    """
     young, shear, nu, density = map(_plain, card.fields[1:5])
     if nu is None and young and shear:
         nu = young / 2 / shear - 1
     if young is None and shear and nu is not None:
         young = 2 * shear * (1 + nu)
     return FileMaterial(
-        name=f"MAT1 {card.fields[0]}", group=group, E=young, nu=nu, density=density or None
+        name=f"MAT1 {card.fields[0]}",
+        group=group,
+        E=young,
+        nu=nu,
+        density=unit * density if density else None,
     )
 
 

@@ -33,8 +33,8 @@ BEAMS = (11, 21, 22, 23, 24)
 NODES, ELEMENTS = ("2411", "781"), ("2412", "780")
 #: entries for each member of a group: kind and number, and in newer ones two more
 GROUPS = {"2417": 2, "2429": 2, "2430": 2, "2432": 2, "2435": 4, "2452": 4, "2467": 4, "2477": 4}
-#: kind of a member of a group that is an element
-IS_ELEMENT = 8
+#: kinds of members of a group: a node, an element
+IS_NODE, IS_ELEMENT = 7, 8
 
 
 def read(path: str) -> Deck:
@@ -171,6 +171,9 @@ def _add_groups(lines: Lines, data: Data, step: int) -> None:
             k += 1
         kinds, numbers = entries[0::step], entries[1::step]
         members = [number for kind, number in zip(kinds, numbers) if kind == IS_ELEMENT]
+        nodes = {number for kind, number in zip(kinds, numbers) if kind == IS_NODE}
+        if nodes:
+            lines.node_sets.setdefault(name, set()).update(nodes)
         if members:
             lines.sets.setdefault(name, []).extend(members)
             lines.material_sets.add(name)

@@ -224,16 +224,30 @@ def with_list_of(raw: Mapping[str, Any], folder: Path, shaft: ReadShaft) -> Read
 
 
 def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
-    """Return an error with paths of the file: as :func:`with_table_paths`, and those of a single
-    engine or load without a name.
+    """Return an error with paths of the file: as :func:`with_table_paths`, those of a single engine or
+    load without a name, and those of a single gear by its name where the file gives it one.
     """
     alone = [(role, role) for role in SHORT if not _several(raw.get(role))]
     problems = []
     for problem in error.problems:
         if problem.path[:2] in alone:
             problem = problem.located(None, path=(problem.path[0], *problem.path[2:]))
+        elif named := _single_gear(raw, problem.path):
+            problem = problem.located(None, path=named)
         problems.append(problem)
     return with_table_paths(SceneError.of(problems), raw)
+
+
+def _single_gear(raw: Mapping[str, Any], path: tuple) -> tuple:
+    """Return the path of an entry of the only gear of a shaft, by its name; empty for other entries."""
+    if path[:1] != ("shaft",) or len(path) < 3 or path[2] not in Member.model_fields:
+        return ()
+    tables: Any = raw.get("shaft")
+    table = tables.get(path[1]) if isinstance(tables, Mapping) else None
+    gears = table.get("gears") if isinstance(table, Mapping) else None
+    if not isinstance(gears, Mapping) or len(gears) != 1 or path[2] in Shaft.model_fields:
+        return ()
+    return ("shaft", path[1], "gears", *gears, *path[2:])
 
 
 def _several(table: Any) -> bool:

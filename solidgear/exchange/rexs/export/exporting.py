@@ -103,12 +103,12 @@ def _of_train(train: Train) -> Exported:
     for scene in scenes.values():
         _leave_settled_out(scene)
     parts.write(parts.unit, **{REST: "{}"})
-    files = dict(imported(parts.document(), train.name).tables)
-    tables = plain(files.pop(next(iter(files))))
+    files = plain(imported(parts.document(), train.name).tables)
+    tables = files.pop(next(iter(files)))
     rows: list[tuple[str, list[str]]] = []
     for name, table in due["shaft"].items():
         table["scene"] = f"{name}.toml"
-        rest = rest_of(plain(files[f"{name}.toml"]), scenes[name], _usual)
+        rest = rest_of(files[f"{name}.toml"], scenes[name], _usual)
         rows += lost(rest, name)
         parts.write(made.shafts[name], **{REST: rest_text(rest)})
     rest = rest_of(tables, due, _usual)
