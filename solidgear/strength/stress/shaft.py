@@ -6,7 +6,7 @@ refined (Williams 1952), so they are listed and get no number.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,9 +19,21 @@ from solidgear.core.scene.outline import radii_of
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.din743 import Load as LoadKind
-from solidgear.strength.stress.drawn import DrawnStress, Unrated, drawn_stresses, steel_at_size
+from solidgear.strength.stress.drawn import (
+    DrawnStress,
+    Unrated,
+    drawn_stresses,
+    no_crack_check,
+    steel_at_size,
+)
 from solidgear.strength.stress.duty import DutyForces, levels
 from solidgear.strength.stress.fillet_rating import FatigueFactor, FilletNotch
+from solidgear.strength.stress.meeting import (
+    PlacedNotch,
+    meeting_remarks,
+    placed_notches,
+    together,
+)
 from solidgear.strength.stress.nominal import (
     NominalRow,
     NominalStress,
@@ -31,14 +43,18 @@ from solidgear.strength.stress.nominal import (
 from solidgear.strength.stress.norm.steels import source_of, strength_of
 from solidgear.strength.stress.notch import ENOUGH, FilletFactors, NotchFactors, fillet_factors
 from solidgear.strength.stress.published import PUBLISHED
-from solidgear.strength.stress.rating import Rating, rated
-from solidgear.strength.stress.section_forces import SectionForces, forces_of
+from solidgear.strength.stress.rating import Rating, rated, severity
+from solidgear.strength.stress.section_forces import (
+    Cut,
+    SectionForces,
+    both_sides,
+    forces_of,
+)
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from solidgear.core import Scene
-    from solidgear.core.scene import Segment
     from solidgear.strength.stress.conditions import LoadLevel
 
 #: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress, or is at it
@@ -66,6 +82,11 @@ class Local:
     shear_bar: float
     angle: float  #: of that place on the arc, from the cylinder, rad
 
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Normal stress, then shear stress, Pa: the largest is the worst."""
+        return self.amplitude + abs(self.mean), abs(self.shear)
+
 
 @dataclass(frozen=True)
 class Notch:
@@ -90,10 +111,9 @@ class Notch:
     remark: str  #: on disturbances of its stress; empty for none
 
     @property
-    def severity(self) -> tuple[float, float]:
-        """Rank of a fillet, the worst least: the safety, or minus the stress where there is none."""
-        safety = self.rating.worst if self.rating else np.inf
-        return safety, -(self.local.amplitude + abs(self.local.mean))
+    def severity(self) -> tuple[float, float, float]:
+        """Rank of a fillet, the worst least."""
+        return severity(self.rating, self.local.rank[0])
 
 
 class SharpCorner(NamedTuple):
@@ -122,11 +142,16 @@ class ShaftStress:
 
     @property
     def worst(self) -> tuple[Notch | DrawnStress, ...]:
-        """Fillets and features, that with the least safety first; without strength, the fillet with
-        the largest stress.
+        """Fillets and features, that with the least safety against fatigue first; without strength, the
+        fillet with the largest stress.
         """
         notches: list[Notch | DrawnStress] = [*self.notches, *self.drawn]
         return tuple(sorted(notches, key=lambda notch: notch.severity))
+
+    @property
+    def ratings(self) -> tuple[Rating, ...]:
+        """Ratings of all notches that have one, in the same order."""
+        return tuple(notch.rating for notch in self.worst if notch.rating is not None)
 
 
 def shaft_stress(
@@ -187,16 +212,21 @@ def shaft_stress(
     forces = forces_of(scene, loads, gravity)
     conditions = conditions or Conditions()
     seats = [(s.lo, s.hi) for s in scene.stations if np.any(loads.get(s.name, 0.0))]
-    drawn, unrated = drawn_stresses(scene, forces, conditions, duty)
-    remarks = []
-    notches = []
+    fillets, remarks = [], []
     for corner in sorted(scene.outline.corners, key=lambda c: c.y):
         if corner.root and corner.kind == "fillet":
             progress(corner.name)
             try:
-                notches.append(_notch(scene, corner, forces, seats, tolerance, conditions, duty))
+                fillets.append(fillet_factors(scene, corner.name, tolerance))
             except SolidgearError as error:  # the others have their stress all the same
                 remarks.append(f"no stress there: {error}")
+    placed = placed_fillets(scene, fillets)
+    drawn, unrated = drawn_stresses(scene, forces, conditions, duty, placed)
+    features = placed_notches(scene)
+    notches = [
+        _Fillet(scene, fillet, seats, tolerance, conditions, duty, features).worst(forces)
+        for fillet in fillets
+    ]
     return ShaftStress(
         forces,
         nominal_rows(scene.segments, forces),
@@ -233,67 +263,133 @@ def sharp_corners(scene: Scene) -> Iterator[SharpCorner]:
             yield SharpCorner(edge.y, edge.surface, (low.name, high.name), bool(edge.root))
 
 
-def _notch(
-    scene: Scene,
-    corner: Corner,
-    forces: SectionForces,
-    seats: Sequence[tuple[float, float]],
-    tolerance: float,
-    conditions: Conditions,
-    duty: Sequence[DutyForces],
-) -> Notch:
-    fillet = fillet_factors(scene, corner.name, tolerance)
-    section_load = forces.at(fillet.reference)
-    nominal = nominal_stress(fillet.section, section_load, fillet.radius)
-    local, (small, large) = local_stress(fillet, section_load), _diameters(scene, corner)
-    segment = scene.segments[corner.owner]
-    strength = strength_of(segment)
-    published, rating, fatigue = {}, None, {}
-    if corner.surface == "outer":
-        published = {
-            source: {load: factor(load, large, small, corner.radial) for load in LOADS}
-            for source, factor in PUBLISHED.items()
-        }
-        if strength is not None:
-            under = levels(conditions, duty, nominal, partial(_nominal_at, fillet))
-            rating = _rating(scene, segment, FilletNotch(fillet, large), under, conditions)
-            steel = steel_at_size(strength, rating, conditions)
-            fatigue = FilletNotch(fillet, large).by_load(steel)
-    return Notch(
-        name=corner.name,
-        y=fillet.reference,
-        radius=corner.radial,
-        small=small,
-        large=large,
-        found=fillet,
-        forces=section_load,
-        nominal=nominal,
-        local=local,
-        published=published,
-        fatigue=fatigue,
-        rating=rating,
-        remark=_remark(corner, seats, fillet, tolerance, _excess_by_shear(fillet, nominal, local)),
-    )
+def placed_fillets(scene: Scene, fillets: Iterable[FilletFactors]) -> list[PlacedNotch]:
+    """Return the fillets on the outside of a shaft that other notches may meet."""
+    return [
+        PlacedNotch(fillet.name, "fillet", fillet.corner.span, _filleted(scene, fillet))
+        for fillet in fillets
+        if fillet.corner.surface == "outer"
+    ]
+
+
+def _filleted(scene: Scene, fillet: FilletFactors) -> FilletNotch:
+    return FilletNotch(fillet, _diameters(scene, fillet.corner)[1])
+
+
+@dataclass(frozen=True)
+class _Fillet:
+    """A fillet with all that its stress depends on but section forces."""
+
+    scene: Scene
+    fillet: FilletFactors
+    seats: Sequence[tuple[float, float]]  #: on which loads enter
+    tolerance: float
+    conditions: Conditions
+    duty: Sequence[DutyForces]
+    features: Sequence[PlacedNotch]  #: of the shaft, that it may meet
+
+    def worst(self, forces: SectionForces) -> Notch:
+        """Return its stress, the worse of both sides of every load that enters over it, with the least
+        safety of every kind.
+        """
+        all_forces = [forces, *(point.forces for point in self.duty)]
+        notches = [self._at(cut, forces) for cut in sections_at(self.fillet, all_forces)]
+        notch = min(notches, key=lambda notch: notch.severity)
+        ratings = [each.rating for each in notches if each.rating is not None]
+        if notch.rating is None:
+            return notch
+        return replace(notch, rating=notch.rating.with_least_of(ratings))
+
+    def _at(self, cut: Cut, forces: SectionForces) -> Notch:
+        """Return its stress with loads on one side of it."""
+        scene, fillet, corner = self.scene, self.fillet, self.fillet.corner
+        section_load = cut.of(forces)
+        nominal = nominal_stress(fillet.section, section_load, fillet.radius)
+        local, (small, large) = local_stress(fillet, section_load), _diameters(scene, corner)
+        segment = scene.segments[corner.owner]
+        strength = strength_of(segment)
+        published, rating, fatigue = {}, None, {}
+        met = [*_met(scene, fillet, self.features)]
+        if corner.surface == "outer":
+            published = {
+                source: {load: factor(load, large, small, corner.radial) for load in LOADS}
+                for source, factor in PUBLISHED.items()
+            }
+            if strength is not None:
+                under_cut = partial(_nominal_at, fillet, cut)
+                under = levels(self.conditions, self.duty, nominal, under_cut)
+                rating = _rating(scene, fillet, met, under, self.conditions)
+                steel = steel_at_size(strength, rating, self.conditions)
+                fatigue = FilletNotch(fillet, large).by_load(steel)
+        by_shear = _excess_by_shear(fillet, nominal, local)
+        remarks = [
+            *meeting_remarks(met),
+            *_remarks(corner, self.seats, fillet, self.tolerance, by_shear),
+        ]
+        if met and rating is not None and self.conditions.hard_surface and rating.crack is None:
+            remarks.append(no_crack_check(self.conditions))
+        return Notch(
+            name=corner.name,
+            y=fillet.reference,
+            radius=corner.radial,
+            small=small,
+            large=large,
+            found=fillet,
+            forces=section_load,
+            nominal=nominal,
+            local=local,
+            published=published,
+            fatigue=fatigue,
+            rating=rating,
+            remark="; ".join(remarks),
+        )
+
+
+def sections_at(fillet: FilletFactors, forces: Sequence[SectionForces]) -> Iterator[Cut]:
+    """Yield the section of a fillet, with every load whose seat crosses its step on one side and on
+    the other. A seat that ends at the step is on one side of it.
+    """
+    step = fillet.corner.y
+    loads = {load.name: load.seat or (load.y, load.y) for each in forces for load in each.loads}
+    crossing = [name for name, (lo, hi) in loads.items() if lo + TOUCH < step < hi - TOUCH]
+    yield from both_sides(fillet.reference, True, crossing)
+
+
+def _met(
+    scene: Scene, fillet: FilletFactors, features: Sequence[PlacedNotch]
+) -> Iterator[PlacedNotch]:
+    """Yield the features that a fillet meets."""
+    for placed in placed_fillets(scene, [fillet]):
+        counted: set[str] = set()
+        for feature in features:
+            if feature.name not in counted and placed.meets(feature):
+                counted |= {feature.name, *feature.counted}
+                yield feature
 
 
 def _rating(
     scene: Scene,
-    segment: Segment,
-    notch: FilletNotch,
+    fillet: FilletFactors,
+    met: Sequence[PlacedNotch],
     under: Sequence[LoadLevel],
     conditions: Conditions,
 ) -> Rating:
-    """Rate a fillet on a segment whose strength is known under levels of nominal stress."""
+    """Rate a fillet on a segment whose strength is known, with the features that it meets, under
+    levels of nominal stress.
+    """
+    segment = scene.segments[fillet.corner.owner]
     strength = strength_of(segment)
     assert strength is not None, "without strength there is no rating"
+    (placed,) = placed_fillets(scene, [fillet])
+    raised = replace(placed, notch=replace(_filleted(scene, fillet), bars=1.0))
     return rated(
-        notch,
+        together(placed, met),
         under,
         strength,
         conditions,
         largest=2 * scene.outline.largest_radius,
         source=source_of(segment),
-        raised=replace(notch, bars=1.0),
+        raised=together(raised, met),
     )
 
 
@@ -301,14 +397,29 @@ def rating_under(
     scene: Scene, notch: Notch, forces: SectionForces, conditions: Conditions
 ) -> Rating:
     """Rate a fillet that is rated under other section forces."""
-    under = conditions.levels(_nominal_at(notch.found, forces))
-    segment = scene.segments[notch.found.corner.owner]
-    return _rating(scene, segment, FilletNotch(notch.found, notch.large), under, conditions)
+    met = [*_met(scene, notch.found, placed_notches(scene))]
+    ratings = [
+        _rating(
+            scene,
+            notch.found,
+            met,
+            conditions.levels(_nominal_at(notch.found, cut, forces)),
+            conditions,
+        )
+        for cut in sections_at(notch.found, [forces])
+    ]
+    return min(ratings, key=lambda rating: severity(rating, 0.0)).with_least_of(ratings)
 
 
-def _nominal_at(fillet: FilletFactors, forces: SectionForces) -> NominalStress:
+def local_under(notch: Notch, forces: SectionForces) -> Local:
+    """Return the stress on a fillet under other section forces."""
+    cuts = sections_at(notch.found, [forces])
+    return max((local_stress(notch.found, cut.of(forces)) for cut in cuts), key=lambda x: x.rank)
+
+
+def _nominal_at(fillet: FilletFactors, cut: Cut, forces: SectionForces) -> NominalStress:
     """Return the nominal stress of a fillet under section forces of a shaft."""
-    return nominal_stress(fillet.section, forces.at(fillet.reference), fillet.radius)
+    return nominal_stress(fillet.section, cut.of(forces), fillet.radius)
 
 
 def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
@@ -358,31 +469,27 @@ def _excess_by_shear(fillet: FilletFactors, nominal: NominalStress, local: Local
     return local.amplitude / bent - 1 if bent > 0 else np.inf * local.amplitude
 
 
-def _remark(
+def _remarks(
     corner: Corner,
     seats: Sequence[tuple[float, float]],
     fillet: FilletFactors,
     tolerance: float,
     by_shear: float,
-) -> str:
-    """Return the remark that a user must know with the numbers of a fillet."""
-    remarks = []
+) -> Iterator[str]:
+    """Yield what a user must know with the numbers of a fillet."""
     first, last = corner.span
     gaps = [max(first - hi, lo - last, 0.0) for lo, hi in seats]
     nearest = min(gaps, default=np.inf) / (2 * fillet.section.outer)
     if nearest < NEAR:
         distance = f"{nearest:.2g} diameters away" if nearest > TOUCHING else "right beside it"
-        remarks.append(f"a load enters {distance}: its local effect is not in the factors")
+        yield f"a load enters {distance}: its local effect is not in the factors"
     if fillet.widest > tolerance:
-        remarks.append(
-            f"error bar {100 * fillet.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
-        )
+        yield f"error bar {100 * fillet.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
     if by_shear > SHEARED:
         share = f"{100 * by_shear:.0f} % above" if np.isfinite(by_shear) else "not"
-        remarks.append(
+        yield (
             f"its amplitude is {share} Kt times nominal bending, by the shear force, which a rating "
             "by DIN 743 leaves out"
         )
     if corner.surface == "bore":
-        remarks.append("DIN 743 has no formula for a step in a bore")
-    return "; ".join(remarks)
+        yield "DIN 743 has no formula for a step in a bore"
