@@ -23,11 +23,11 @@ from solidgear.parts.body_file import BodyFile
 from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
 from solidgear.strength.stress.cases import CaseStress, case_stress, rated_under
 from solidgear.strength.stress.conditions import Conditions
-from solidgear.strength.stress.drawn import DrawnStress
+from solidgear.strength.stress.drawn import LITTLE, DrawnStress
 from solidgear.strength.stress.duty import DutyForces, cycles_of
 from solidgear.strength.stress.norm.steels import strength_of
 from solidgear.strength.stress.notch import ENOUGH
-from solidgear.strength.stress.rating import Kind
+from solidgear.strength.stress.rating import Kind, Rating
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
 from solidgear.strength.stress.shaft import (
     Notch,
@@ -107,6 +107,16 @@ def least_safety(shafts: Sequence[StressedShaft], kind: Kind) -> LeastSafety | N
         if notch.rating is not None and kind in notch.rating.safeties
     ]
     return min(rated, key=lambda least: least.value, default=None)
+
+
+def lesser_elsewhere(
+    shafts: Sequence[StressedShaft], worst: Rating
+) -> Iterator[tuple[Kind, LeastSafety]]:
+    """Yield the kinds of which another notch has less than that of the least against fatigue has."""
+    for kind, value in worst.safeties.items():
+        least = least_safety(shafts, kind)
+        if least is not None and least.value < (1 - LITTLE) * value:
+            yield kind, least
 
 
 @dataclass(frozen=True)

@@ -10,7 +10,7 @@ from functools import partial
 from solidgear.core import listed
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
-from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft, least_safety
+from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft, lesser_elsewhere
 from solidgear.strength.stress.cases import CaseStress
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.drawn import DrawnStress
@@ -230,11 +230,9 @@ def _place(shaft: StressedShaft, notch: Notch | DrawnStress, several: bool) -> s
 
 def _less_elsewhere(stressed: StressAtRest, worst: Rating) -> Iterator[str]:
     """Yield the least safeties that other notches have than that of the least against fatigue."""
-    for kind, value in worst.safeties.items():
-        least = least_safety(stressed.shafts, kind)
-        if least is not None and least.value < (1 - LITTLE) * value:
-            place = _place(least.shaft, least.notch, len(stressed.shafts) > 1)
-            yield f"; {KIND_WORDS[kind]} {place} has less, {safety(least.value)}"
+    for kind, least in lesser_elsewhere(stressed.shafts, worst):
+        place = _place(least.shaft, least.notch, len(stressed.shafts) > 1)
+        yield f"; {KIND_WORDS[kind]} {place} has less, {safety(least.value)}"
 
 
 def _stress_words(notch: Notch | DrawnStress, units: Units) -> str:

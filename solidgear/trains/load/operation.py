@@ -51,6 +51,8 @@ from solidgear.trains.system.equilibrium import (
 SHAFT = "timoshenko"
 #: a [load] of a scene that is off the mesh force by less, of it, is that force written down
 SAME_LOAD = 0.05
+#: stiffness of a bearing across its load, over that along it, that is rounding
+BARE = 1e-12
 LOOP = (
     "meshes of a loop divide the torque by their stiffness; errors of teeth and positions, which "
     "shift it, are left out"
@@ -190,6 +192,12 @@ class Operating:
             f"{place}bearing {end} carries no load within its clearance, so it has no stiffness"
             for end in solved.lost
         ]
+        notes += [
+            f"{place}bearing {end} carries on one element, and nothing holds it across its load: "
+            "motions there have no error bar"
+            for end in self.bearings
+            if end in solved.tangent and on_one_element(solved.tangent[end])
+        ]
         return OperatingState(
             point=point,
             models=assembly.models_by_shaft(self.models),
@@ -230,6 +238,12 @@ class Operating:
                 end = f"{side}.{station}"
                 loads[end] = loads.get(end, np.zeros(6)) + six
         return loads, notes
+
+
+def on_one_element(tangent: np.ndarray) -> bool:
+    """Return whether a bearing (6, 6) has stiffness along one direction across the shaft alone."""
+    least, largest = np.linalg.eigvalsh(tangent[np.ix_((0, 2), (0, 2))])
+    return bool(abs(least) <= BARE * largest and largest > 0)
 
 
 def refuse_own_loads(train: Train, side: str) -> None:
