@@ -33,6 +33,10 @@ MOST_ROWS, MOST_MOTIONS, MOST_SENTENCES, MOST_CORNERS = 10, 5, 6, 6
 ENDLESS = 1e6
 
 
+#: messages on safeties that are less at another notch
+LESSER = {"yielding": "worst yielding", "crack": "worst crack"}
+
+
 @dataclass(frozen=True)
 class Section:
     """A section of the page."""
@@ -97,7 +101,7 @@ def tiles(facts: Facts, words: Language) -> Iterator[Tile]:
     notch, section = facts.notch, facts.section
     if notch is not None and notch.fatigue is not None:
         look = "bad" if notch.fatigue < 1 else ""
-        place = ", ".join([notch.place, *_corners(facts, words, "tile")])
+        place = ", ".join([notch.place, *_corners(facts, words, "tile corner", "tile corners")])
         yield Tile(_safety(notch.fatigue, words), words.say("tile fatigue"), place, look)
     elif notch is not None:
         stress = words.text(notch.amplitude, STRESS, 3)
@@ -219,13 +223,14 @@ def _worst(facts: Facts, words: Language) -> Section:
             sentences.append(words.say("worst rated", fatigue=fatigue, yielding=yielding))
         for other in notch.elsewhere:
             place = _of_shaft(other.place, other.shaft, facts, words)
-            key, value = f"worst {other.kind}", _safety(other.safety, words)
+            value = _safety(other.safety, words)
+            key = LESSER[other.kind]
             sentences.append(words.say(key, place=place, y=Place(other.y), safety=value))
         if notch.least is not None:
             fatigue, yielding = (_safety(s, words) for s in notch.least)
             sentences.append(words.say("worst least", fatigue=fatigue, yielding=yielding))
     sentences += _absent(facts, words, "worst") + _absent(facts, words, "notch")
-    sentences += _corners(facts, words, "worst")
+    sentences += _corners(facts, words, "worst corner", "worst corners")
     if section is not None:
         place = _of_shaft(section.segment, section.shaft, facts, words)
         stresses = {
@@ -236,8 +241,8 @@ def _worst(facts: Facts, words: Language) -> Section:
     return Section("worst", title, sentences=tuple(sentences))
 
 
-def _corners(facts: Facts, words: Language, where: str) -> Iterator[str]:
-    """Yield a sentence on the sharp corners, which are not rated, for a tile or for the section."""
+def _corners(facts: Facts, words: Language, single: str, several: str) -> Iterator[str]:
+    """Yield the message on the sharp corners, which are not rated, by its key of one or of more."""
     places = [words.place(corner.y) for corner in facts.corners]
     if facts.train:
         places = [
@@ -245,12 +250,11 @@ def _corners(facts: Facts, words: Language, where: str) -> Iterator[str]:
             for place, corner in zip(places, facts.corners)
         ]
     if places:
-        key = "corner" if len(places) == 1 else "corners"
         values = {"count": len(places), "places": words.listed(tuple(places[:MOST_CORNERS]))}
         more = len(places) - MOST_CORNERS
         if more > 0:
             values["places"] += f" + {more}"
-        yield words.say(f"{where} {key}", **values)
+        yield words.say(single if len(places) == 1 else several, **values)
 
 
 def _of_shaft(place: str, shaft: str, facts: Facts, words: Language) -> str:

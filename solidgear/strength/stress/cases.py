@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.drawn import drawn_stresses
 from solidgear.strength.stress.rating import Rating, severity
-from solidgear.strength.stress.shaft import ShaftStress, local_under, placed_fillets, rating_under
+from solidgear.strength.stress.shaft import ShaftStress, local_under, rating_under
 
 if TYPE_CHECKING:
     from solidgear.core import Scene
@@ -88,7 +88,6 @@ def rated_under(
     for notch in stress.notches:
         if notch.rating is not None:
             yield Rated(notch.name, rating_under(scene, notch, forces, conditions))
-    fillets = placed_fillets(scene, (notch.found for notch in stress.notches))
-    for drawn in drawn_stresses(scene, forces, conditions, fillets=fillets)[0]:
+    for drawn in drawn_stresses(scene, forces, conditions)[0]:
         if drawn.rating is not None:
             yield Rated(drawn.name, drawn.rating)

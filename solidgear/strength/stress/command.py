@@ -17,7 +17,6 @@ from solidgear.strength.acting import Acting, AtRestFile
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.study import stress as stressed
 
-
 if TYPE_CHECKING:
     Hours: TypeAlias = str | float | None
 else:

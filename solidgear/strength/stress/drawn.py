@@ -9,12 +9,13 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from solidgear.core import TOUCH, listed
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.din743 import Load
 from solidgear.strength.stress.duty import DutyForces, levels
 from solidgear.strength.stress.meeting import (
     PlacedNotch,
-    meeting_remarks,
+    meeting_remark,
     others_at,
     placed_notches,
     together,
@@ -74,10 +75,9 @@ def drawn_stresses(
     forces: SectionForces,
     conditions: Conditions,
     duty: Sequence[DutyForces] = (),
-    fillets: Sequence[PlacedNotch] = (),
 ) -> tuple[tuple[DrawnStress, ...], tuple[Unrated, ...]]:
     """Return the stress of the features of a shaft that the norm rates, over a duty table where there
-    is one, and the others; `fillets` are those that they may meet.
+    is one, and the others.
     """
     stresses, unrated = [], []
     notches = placed_notches(scene)
@@ -87,8 +87,7 @@ def drawn_stresses(
             unrated.append(Unrated(placed.name, placed.kind, *placed.remarks))
             continue
         segment = next(s for s in scene.segments if s.name == feature.segment)
-        others = (*notches, *fillets)
-        drawn = _Drawn(scene, segment, placed, notch.section, others, forces, conditions, duty)
+        drawn = _Drawn(scene, segment, placed, notch.section, notches, forces, conditions, duty)
         stresses.append(drawn.worst())
     return tuple(stresses), tuple(unrated)
 
@@ -101,7 +100,7 @@ class _Drawn:
     segment: Segment
     placed: PlacedNotch
     section: Section  #: of nominal stress
-    notches: tuple[PlacedNotch, ...]  #: of the shaft, itself among them
+    notches: Sequence[PlacedNotch]  #: of the shaft, itself among them
     forces: SectionForces
     conditions: Conditions
     duty: Sequence[DutyForces]
@@ -112,16 +111,28 @@ class _Drawn:
         """
         candidates = [*self._candidates()]
         stress = min(candidates, key=lambda stress: stress.severity)
+        remarks = [stress.remark] if stress.remark else []
+        if without := self._without_factor():
+            remarks.append(f"it meets the {listed(without)}, which has no factor and is left out")
         ratings = [each.rating for each in candidates if each.rating is not None]
-        if stress.rating is None:
-            return stress
-        rating = stress.rating.with_least_of(ratings)
-        if math.isclose(rating.yielding, stress.rating.yielding, rel_tol=LITTLE):
-            return replace(stress, rating=rating)
-        weak = min(candidates, key=lambda each: each.rating.yielding if each.rating else math.inf)
-        elsewhere = f"against yielding it is worst at y = {1e3 * weak.y:.4g} mm"
-        remark = f"{stress.remark}; {elsewhere}" if stress.remark else elsewhere
-        return replace(stress, rating=rating, remark=remark)
+        rating = stress.rating
+        if rating is not None:
+            rating = rating.with_least_of(ratings)
+            weak = min(
+                candidates, key=lambda each: each.rating.yielding if each.rating else math.inf
+            )
+            if rating.yielding < (1 - LITTLE) * stress.rating.yielding:
+                remarks.append(f"against yielding it is worst at y = {1e3 * weak.y:.4g} mm")
+        return replace(stress, rating=rating, remark="; ".join(remarks))
+
+    def _without_factor(self) -> list[str]:
+        """Return the names of what it meets along its length that the norm has no factor for."""
+        (lo, hi), met = self.placed.span, []
+        for other in self.notches:
+            overlaps = other.span[0] < hi - TOUCH and other.span[1] > lo + TOUCH
+            if other.notch is None and overlaps and self.placed.touches(other):
+                met.append(f'{other.kind} "{other.name}"')
+        return met
 
     def _candidates(self) -> Iterator[DrawnStress]:
         """Yield its stress in sections along it, once where the same acts in several."""
@@ -142,7 +153,7 @@ class _Drawn:
         notch, six = together(placed, others), cut.of(self.forces)
         nominal = section.nominal(six)
         strength = strength_of(self.segment)
-        remarks = [*placed.remarks, *meeting_remarks(others)]
+        remarks = [*placed.remarks, *filter(None, [meeting_remark(others)])]
         rating, factors = None, {}
         if strength is not None:
             rating = rated(

@@ -2,7 +2,8 @@
 
 DIN 743 has factors of one notch, and of two keyways. For all others that overlap, the excess of every
 factor over one adds (:class:`~solidgear.strength.stress.norm_notch.MeetingNotches`). A keyway and a
-hole at other angles, which do not touch around the shaft, do not meet.
+hole at other angles, which do not touch around the shaft, do not meet. Files that draw a fillet into
+another notch, or grooves into each other, are refused.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
-from solidgear.core import TOUCH, listed
+from solidgear.core import listed
 from solidgear.strength.stress.norm_notch import MeetingNotches
 from solidgear.strength.stress.notches import drawn_notch
 from solidgear.strength.stress.section_forces import Cut, lies_in
@@ -43,11 +44,6 @@ class PlacedNotch:
         room = self.half_width + other.half_width
         gaps = (math.remainder(a - b, 2 * math.pi) for a in self.angles for b in other.angles)
         return any(abs(gap) < room for gap in gaps)
-
-    def meets(self, other: PlacedNotch) -> bool:
-        """Return whether it meets another anywhere."""
-        (lo, hi), (start, end) = self.span, other.span
-        return start < hi - TOUCH and end > lo + TOUCH and self.touches(other)
 
 
 def placed_notches(scene: Scene) -> list[PlacedNotch]:
@@ -96,15 +92,12 @@ def together(placed: PlacedNotch, others: Sequence[PlacedNotch]) -> RatedNotch:
     return MeetingNotches(placed.notch, notches) if notches else placed.notch
 
 
-def meeting_remarks(others: Sequence[PlacedNotch]) -> Iterator[str]:
-    """Yield remarks on a notch that others meet."""
-    rated = [f'{other.kind} "{other.name}"' for other in others if other.notch is not None]
-    without = [f'{other.kind} "{other.name}"' for other in others if other.notch is None]
-    if rated:
-        what = "both" if len(rated) == 1 else "all"
-        yield (
-            f"it meets the {listed(rated)}: the norm has no factor for {what}, so that the excess of "
-            "every factor over 1 adds (assumed)"
-        )
-    if without:
-        yield f"it meets the {listed(without)}, which has no factor and is left out"
+def meeting_remark(others: Sequence[PlacedNotch]) -> str:
+    """Return the remark on a notch that others with a factor meet; empty without any."""
+    names = [f'{other.kind} "{other.name}"' for other in others if other.notch is not None]
+    if not names:
+        return ""
+    return (
+        f"it meets the {listed(names)}: the norm has no factor for {'both' if len(names) == 1 else 'all'}, "
+        "so that the excess of every factor over 1 adds (assumed)"
+    )

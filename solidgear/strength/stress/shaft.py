@@ -6,7 +6,7 @@ refined (Williams 1952), so they are listed and get no number.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import TYPE_CHECKING, NamedTuple
@@ -19,21 +19,9 @@ from solidgear.core.scene.outline import radii_of
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.din743 import Load as LoadKind
-from solidgear.strength.stress.drawn import (
-    DrawnStress,
-    Unrated,
-    drawn_stresses,
-    no_crack_check,
-    steel_at_size,
-)
+from solidgear.strength.stress.drawn import DrawnStress, Unrated, drawn_stresses, steel_at_size
 from solidgear.strength.stress.duty import DutyForces, levels
 from solidgear.strength.stress.fillet_rating import FatigueFactor, FilletNotch
-from solidgear.strength.stress.meeting import (
-    PlacedNotch,
-    meeting_remarks,
-    placed_notches,
-    together,
-)
 from solidgear.strength.stress.nominal import (
     NominalRow,
     NominalStress,
@@ -44,17 +32,13 @@ from solidgear.strength.stress.norm.steels import source_of, strength_of
 from solidgear.strength.stress.notch import ENOUGH, FilletFactors, NotchFactors, fillet_factors
 from solidgear.strength.stress.published import PUBLISHED
 from solidgear.strength.stress.rating import Rating, rated, severity
-from solidgear.strength.stress.section_forces import (
-    Cut,
-    SectionForces,
-    both_sides,
-    forces_of,
-)
+from solidgear.strength.stress.section_forces import SectionForces, both_sides, forces_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
 
     from solidgear.core import Scene
+    from solidgear.core.scene import Segment
     from solidgear.strength.stress.conditions import LoadLevel
 
 #: in diameters of the shaft: a load that enters nearer to a fillet disturbs its stress, or is at it
@@ -212,21 +196,16 @@ def shaft_stress(
     forces = forces_of(scene, loads, gravity)
     conditions = conditions or Conditions()
     seats = [(s.lo, s.hi) for s in scene.stations if np.any(loads.get(s.name, 0.0))]
-    fillets, remarks = [], []
+    drawn, unrated = drawn_stresses(scene, forces, conditions, duty)
+    remarks = []
+    notches = []
     for corner in sorted(scene.outline.corners, key=lambda c: c.y):
         if corner.root and corner.kind == "fillet":
             progress(corner.name)
             try:
-                fillets.append(fillet_factors(scene, corner.name, tolerance))
+                notches.append(_notch(scene, corner, forces, seats, tolerance, conditions, duty))
             except SolidgearError as error:  # the others have their stress all the same
                 remarks.append(f"no stress there: {error}")
-    placed = placed_fillets(scene, fillets)
-    drawn, unrated = drawn_stresses(scene, forces, conditions, duty, placed)
-    features = placed_notches(scene)
-    notches = [
-        _Fillet(scene, fillet, seats, tolerance, conditions, duty, features).worst(forces)
-        for fillet in fillets
-    ]
     return ShaftStress(
         forces,
         nominal_rows(scene.segments, forces),
@@ -263,133 +242,67 @@ def sharp_corners(scene: Scene) -> Iterator[SharpCorner]:
             yield SharpCorner(edge.y, edge.surface, (low.name, high.name), bool(edge.root))
 
 
-def placed_fillets(scene: Scene, fillets: Iterable[FilletFactors]) -> list[PlacedNotch]:
-    """Return the fillets on the outside of a shaft that other notches may meet."""
-    return [
-        PlacedNotch(fillet.name, "fillet", fillet.corner.span, _filleted(scene, fillet))
-        for fillet in fillets
-        if fillet.corner.surface == "outer"
-    ]
-
-
-def _filleted(scene: Scene, fillet: FilletFactors) -> FilletNotch:
-    return FilletNotch(fillet, _diameters(scene, fillet.corner)[1])
-
-
-@dataclass(frozen=True)
-class _Fillet:
-    """A fillet with all that its stress depends on but section forces."""
-
-    scene: Scene
-    fillet: FilletFactors
-    seats: Sequence[tuple[float, float]]  #: on which loads enter
-    tolerance: float
-    conditions: Conditions
-    duty: Sequence[DutyForces]
-    features: Sequence[PlacedNotch]  #: of the shaft, that it may meet
-
-    def worst(self, forces: SectionForces) -> Notch:
-        """Return its stress, the worse of both sides of every load that enters over it, with the least
-        safety of every kind.
-        """
-        all_forces = [forces, *(point.forces for point in self.duty)]
-        notches = [self._at(cut, forces) for cut in sections_at(self.fillet, all_forces)]
-        notch = min(notches, key=lambda notch: notch.severity)
-        ratings = [each.rating for each in notches if each.rating is not None]
-        if notch.rating is None:
-            return notch
-        return replace(notch, rating=notch.rating.with_least_of(ratings))
-
-    def _at(self, cut: Cut, forces: SectionForces) -> Notch:
-        """Return its stress with loads on one side of it."""
-        scene, fillet, corner = self.scene, self.fillet, self.fillet.corner
-        section_load = cut.of(forces)
-        nominal = nominal_stress(fillet.section, section_load, fillet.radius)
-        local, (small, large) = local_stress(fillet, section_load), _diameters(scene, corner)
-        segment = scene.segments[corner.owner]
-        strength = strength_of(segment)
-        published, rating, fatigue = {}, None, {}
-        met = [*_met(scene, fillet, self.features)]
-        if corner.surface == "outer":
-            published = {
-                source: {load: factor(load, large, small, corner.radial) for load in LOADS}
-                for source, factor in PUBLISHED.items()
-            }
-            if strength is not None:
-                under_cut = partial(_nominal_at, fillet, cut)
-                under = levels(self.conditions, self.duty, nominal, under_cut)
-                rating = _rating(scene, fillet, met, under, self.conditions)
-                steel = steel_at_size(strength, rating, self.conditions)
-                fatigue = FilletNotch(fillet, large).by_load(steel)
-        by_shear = _excess_by_shear(fillet, nominal, local)
-        remarks = [
-            *meeting_remarks(met),
-            *_remarks(corner, self.seats, fillet, self.tolerance, by_shear),
-        ]
-        if met and rating is not None and self.conditions.hard_surface and rating.crack is None:
-            remarks.append(no_crack_check(self.conditions))
-        return Notch(
-            name=corner.name,
-            y=fillet.reference,
-            radius=corner.radial,
-            small=small,
-            large=large,
-            found=fillet,
-            forces=section_load,
-            nominal=nominal,
-            local=local,
-            published=published,
-            fatigue=fatigue,
-            rating=rating,
-            remark="; ".join(remarks),
-        )
-
-
-def sections_at(fillet: FilletFactors, forces: Sequence[SectionForces]) -> Iterator[Cut]:
-    """Yield the section of a fillet, with every load whose seat crosses its step on one side and on
-    the other. A seat that ends at the step is on one side of it.
-    """
-    step = fillet.corner.y
-    loads = {load.name: load.seat or (load.y, load.y) for each in forces for load in each.loads}
-    crossing = [name for name, (lo, hi) in loads.items() if lo + TOUCH < step < hi - TOUCH]
-    yield from both_sides(fillet.reference, True, crossing)
-
-
-def _met(
-    scene: Scene, fillet: FilletFactors, features: Sequence[PlacedNotch]
-) -> Iterator[PlacedNotch]:
-    """Yield the features that a fillet meets."""
-    for placed in placed_fillets(scene, [fillet]):
-        counted: set[str] = set()
-        for feature in features:
-            if feature.name not in counted and placed.meets(feature):
-                counted |= {feature.name, *feature.counted}
-                yield feature
+def _notch(
+    scene: Scene,
+    corner: Corner,
+    forces: SectionForces,
+    seats: Sequence[tuple[float, float]],
+    tolerance: float,
+    conditions: Conditions,
+    duty: Sequence[DutyForces],
+) -> Notch:
+    fillet = fillet_factors(scene, corner.name, tolerance)
+    section_load = worst_load(fillet, forces)
+    nominal = nominal_stress(fillet.section, section_load, fillet.radius)
+    local, (small, large) = local_stress(fillet, section_load), _diameters(scene, corner)
+    segment = scene.segments[corner.owner]
+    strength = strength_of(segment)
+    published, rating, fatigue = {}, None, {}
+    if corner.surface == "outer":
+        published = {
+            source: {load: factor(load, large, small, corner.radial) for load in LOADS}
+            for source, factor in PUBLISHED.items()
+        }
+        if strength is not None:
+            under = levels(conditions, duty, nominal, partial(_nominal_at, fillet))
+            rating = _rating(scene, segment, FilletNotch(fillet, large), under, conditions)
+            steel = steel_at_size(strength, rating, conditions)
+            fatigue = FilletNotch(fillet, large).by_load(steel)
+    return Notch(
+        name=corner.name,
+        y=fillet.reference,
+        radius=corner.radial,
+        small=small,
+        large=large,
+        found=fillet,
+        forces=section_load,
+        nominal=nominal,
+        local=local,
+        published=published,
+        fatigue=fatigue,
+        rating=rating,
+        remark=_remark(corner, seats, fillet, tolerance, _excess_by_shear(fillet, nominal, local)),
+    )
 
 
 def _rating(
     scene: Scene,
-    fillet: FilletFactors,
-    met: Sequence[PlacedNotch],
+    segment: Segment,
+    notch: FilletNotch,
     under: Sequence[LoadLevel],
     conditions: Conditions,
 ) -> Rating:
-    """Rate a fillet on a segment whose strength is known, with the features that it meets, under
-    levels of nominal stress.
-    """
-    segment = scene.segments[fillet.corner.owner]
+    """Rate a fillet on a segment whose strength is known under levels of nominal stress."""
     strength = strength_of(segment)
     assert strength is not None, "without strength there is no rating"
-    (placed,) = placed_fillets(scene, [fillet])
-    raised = replace(placed, notch=replace(_filleted(scene, fillet), bars=1.0))
     return rated(
-        together(placed, met),
+        notch,
         under,
         strength,
         conditions,
         largest=2 * scene.outline.largest_radius,
         source=source_of(segment),
-        raised=together(raised, met),
+        raised=replace(notch, bars=1.0),
     )
 
 
@@ -397,29 +310,14 @@ def rating_under(
     scene: Scene, notch: Notch, forces: SectionForces, conditions: Conditions
 ) -> Rating:
     """Rate a fillet that is rated under other section forces."""
-    met = [*_met(scene, notch.found, placed_notches(scene))]
-    ratings = [
-        _rating(
-            scene,
-            notch.found,
-            met,
-            conditions.levels(_nominal_at(notch.found, cut, forces)),
-            conditions,
-        )
-        for cut in sections_at(notch.found, [forces])
-    ]
-    return min(ratings, key=lambda rating: severity(rating, 0.0)).with_least_of(ratings)
+    under = conditions.levels(_nominal_at(notch.found, forces))
+    segment = scene.segments[notch.found.corner.owner]
+    return _rating(scene, segment, FilletNotch(notch.found, notch.large), under, conditions)
 
 
-def local_under(notch: Notch, forces: SectionForces) -> Local:
-    """Return the stress on a fillet under other section forces."""
-    cuts = sections_at(notch.found, [forces])
-    return max((local_stress(notch.found, cut.of(forces)) for cut in cuts), key=lambda x: x.rank)
-
-
-def _nominal_at(fillet: FilletFactors, cut: Cut, forces: SectionForces) -> NominalStress:
+def _nominal_at(fillet: FilletFactors, forces: SectionForces) -> NominalStress:
     """Return the nominal stress of a fillet under section forces of a shaft."""
-    return nominal_stress(fillet.section, cut.of(forces), fillet.radius)
+    return nominal_stress(fillet.section, forces.at(fillet.reference), fillet.radius)
 
 
 def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
@@ -429,6 +327,22 @@ def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
     neighbour = scene.segments[corner.owner - corner.side]
     start, end = radii_of(neighbour, corner.surface)
     return 2 * corner.r, 2 * (end if corner.side > 0 else start)
+
+
+def worst_load(fillet: FilletFactors, forces: SectionForces) -> np.ndarray:
+    """Return the section forces (6,) at a fillet: where a seat crosses its step, as it may over a
+    step of the bore, those on the side of the load that stress it most. A seat that ends at the step
+    is on one side of it.
+    """
+    step, loads = fillet.corner.y, [load for load in forces.loads if load.seat is not None]
+    crossing = [x.name for x in loads if x.seat[0] + TOUCH < step < x.seat[1] - TOUCH]
+    sections = [cut.of(forces) for cut in both_sides(fillet.reference, True, crossing)]
+    return max(sections, key=lambda six: local_stress(fillet, six).rank)
+
+
+def local_under(notch: Notch, forces: SectionForces) -> Local:
+    """Return the stress on a fillet under other section forces."""
+    return local_stress(notch.found, worst_load(notch.found, forces))
 
 
 def local_stress(fillet: NotchFactors, forces: np.ndarray) -> Local:
@@ -469,27 +383,31 @@ def _excess_by_shear(fillet: FilletFactors, nominal: NominalStress, local: Local
     return local.amplitude / bent - 1 if bent > 0 else np.inf * local.amplitude
 
 
-def _remarks(
+def _remark(
     corner: Corner,
     seats: Sequence[tuple[float, float]],
     fillet: FilletFactors,
     tolerance: float,
     by_shear: float,
-) -> Iterator[str]:
-    """Yield what a user must know with the numbers of a fillet."""
+) -> str:
+    """Return the remark that a user must know with the numbers of a fillet."""
+    remarks = []
     first, last = corner.span
     gaps = [max(first - hi, lo - last, 0.0) for lo, hi in seats]
     nearest = min(gaps, default=np.inf) / (2 * fillet.section.outer)
     if nearest < NEAR:
         distance = f"{nearest:.2g} diameters away" if nearest > TOUCHING else "right beside it"
-        yield f"a load enters {distance}: its local effect is not in the factors"
+        remarks.append(f"a load enters {distance}: its local effect is not in the factors")
     if fillet.widest > tolerance:
-        yield f"error bar {100 * fillet.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
+        remarks.append(
+            f"error bar {100 * fillet.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
+        )
     if by_shear > SHEARED:
         share = f"{100 * by_shear:.0f} % above" if np.isfinite(by_shear) else "not"
-        yield (
+        remarks.append(
             f"its amplitude is {share} Kt times nominal bending, by the shear force, which a rating "
             "by DIN 743 leaves out"
         )
     if corner.surface == "bore":
-        yield "DIN 743 has no formula for a step in a bore"
+        remarks.append("DIN 743 has no formula for a step in a bore")
+    return "; ".join(remarks)
