@@ -223,7 +223,7 @@ def test_the_headline_names_the_least_against_fatigue_and_where_another_yields_f
     assert min(ratings, key=lambda n: ratings[n].yielding) == "fit"
     words = headline(result)
     assert 'Worst of 3 notches at ring groove "ring": ' in words
-    assert f'against yielding press fit "fit" has less, {ratings["fit"].yielding:.2f}' in words
+    assert f'; least against yielding {ratings["fit"].yielding:.2f} at press fit "fit".' in words
 
 
 def test_sharp_corners_are_named_beside_the_worst_safety():

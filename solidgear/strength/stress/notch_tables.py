@@ -232,7 +232,7 @@ def _less_elsewhere(stressed: StressAtRest, worst: Rating) -> Iterator[str]:
     """Yield the least safeties that other notches have than that of the least against fatigue."""
     for kind, least in lesser_elsewhere(stressed.shafts, worst):
         place = _place(least.shaft, least.notch, len(stressed.shafts) > 1)
-        yield f"; {KIND_WORDS[kind]} {place} has less, {safety(least.value)}"
+        yield f"; least {KIND_WORDS[kind]} {safety(least.value)} at {place}"
 
 
 def _stress_words(notch: Notch | DrawnStress, units: Units) -> str:
