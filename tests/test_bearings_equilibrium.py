@@ -13,6 +13,7 @@ from solidgear.bearings.ball import BallRow
 from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
+from solidgear.bearings.sliding import condense_y
 from solidgear.bearings.solved import solved
 from solidgear.bearings.study import over_load
 from solidgear.core.errors import SceneError, SolidgearError
@@ -281,6 +282,14 @@ def test_a_shaft_on_one_ball_a_bearing_has_no_error_bar_across_its_load():
     # 25 N on one ball press 12 um through half of the clearance, 10.25 um
     assert 10e-6 < z.value < 15e-6 and 0 < z.bar < 1e-8
     assert sum("nothing holds it across its load" in note for note in deflected.judge.notes) == 2
+
+
+def test_one_ball_holds_no_tilt_of_a_ring_that_slides():
+    """Along y and about z a ball at any angle is one spring: with y condensed nothing is left."""
+    angles = np.linspace(0.1, 1.0, 50)
+    zero = np.zeros(50)
+    arms = np.array([zero, np.sin(angles), zero, zero, zero, 0.0137 * np.cos(angles)]).T
+    assert not condense_y(3e5 * arms[:, :, None] * arms[:, None, :]).any()
 
 
 def test_rounding_of_a_stiffness_is_judged_by_its_largest_entry():
