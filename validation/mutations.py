@@ -1478,8 +1478,8 @@ MUTATIONS = (
         "the moment of a force jumps with the force on its seat",
         "solidgear/strength/stress/section_forces.py",
         "Cut.of",
-        "six + load.six",
-        "six + move_load(load.six, load.y, self.y)",
+        "six - load.six",
+        "six - move_load(load.six, load.y, self.y)",
         "tests/test_notches_meet.py::"
         "test_section_forces_on_a_seat_are_those_of_both_sides_and_balance",
     ),

@@ -250,11 +250,9 @@ def _corners(facts: Facts, words: Language, single: str, several: str) -> Iterat
             for place, corner in zip(places, facts.corners)
         ]
     if places:
-        values = {"count": len(places), "places": words.listed(tuple(places[:MOST_CORNERS]))}
-        more = len(places) - MOST_CORNERS
-        if more > 0:
-            values["places"] += f" + {more}"
-        yield words.say(single if len(places) == 1 else several, **values)
+        key, more = single if len(places) == 1 else several, len(places) - MOST_CORNERS
+        named = words.listed(tuple(places[:MOST_CORNERS])) + (f" + {more}" if more > 0 else "")
+        yield words.say(key, count=len(places), places=named)
 
 
 def _of_shaft(place: str, shaft: str, facts: Facts, words: Language) -> str:

@@ -114,8 +114,8 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     bare = np.abs(np.diag(K)) <= ROUNDING**2 * np.abs(K).max()
     K[(bare[:, None] | bare) & (np.abs(K) <= ROUNDING * np.abs(K).max())] = 0.0
     while (least := _least_eigenvalue(K))[0] < -1e-9:
-        eigenvalue, (a, b) = least
-        i = a if K[a, a] < K[b, b] else b
+        eigenvalue, (first, second) = least
+        i = min(first, second, key=lambda k: K[k, k])
         # where contacts hold a direction no more, its row is rounding of the others
         if 0 < np.abs(K[i]).max() <= ROUNDING * np.abs(K).max():
             K[i] = K[:, i] = 0.0
@@ -125,8 +125,9 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
                 f"the stiffness in {DOF_NAMES[i]} is {K[i, i]:.6g}; it must not be negative"
             )
         raise SceneError(
-            f"the stiffness is indefinite in the pair ({DOF_NAMES[a]}, {DOF_NAMES[b]}): "
-            f"their entries are {K[a, a]:.6g} and {K[b, b]:.6g}, coupled by {K[a, b]:.6g}, "
+            f"the stiffness is indefinite in the pair ({DOF_NAMES[first]}, {DOF_NAMES[second]}): "
+            f"their entries are {K[first, first]:.6g} and {K[second, second]:.6g}, coupled by "
+            f"{K[first, second]:.6g}, "
             "and the smallest eigenvalue, with the diagonal scaled to 1, "
             f"is {eigenvalue:.3g}; it must not be negative"
         )

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
@@ -79,7 +78,7 @@ def drawn_stresses(
     """Return the stress of the features of a shaft that the norm rates, over a duty table where there
     is one, and the others.
     """
-    stresses, unrated = [], []
+    stresses, unrated = list[DrawnStress](), list[Unrated]()
     notches = placed_notches(scene)
     for feature, placed in zip(scene.features, notches):
         notch = placed.notch
@@ -117,12 +116,11 @@ class _Drawn:
         ratings = [each.rating for each in candidates if each.rating is not None]
         rating = stress.rating
         if rating is not None:
-            rating = rating.with_least_of(ratings)
-            weak = min(
-                candidates, key=lambda each: each.rating.yielding if each.rating else math.inf
-            )
-            if rating.yielding < (1 - LITTLE) * stress.rating.yielding:
+            least = rating.with_least_of(ratings)
+            if least.yielding < (1 - LITTLE) * rating.yielding:
+                weak = candidates[[each.yielding for each in ratings].index(least.yielding)]
                 remarks.append(f"against yielding it is worst at y = {1e3 * weak.y:.4g} mm")
+            rating = least
         return replace(stress, rating=rating, remark="; ".join(remarks))
 
     def _without_factor(self) -> list[str]:

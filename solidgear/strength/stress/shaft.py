@@ -334,8 +334,8 @@ def worst_load(fillet: FilletFactors, forces: SectionForces) -> np.ndarray:
     step of the bore, those on the side of the load that stress it most. A seat that ends at the step
     is on one side of it.
     """
-    step, loads = fillet.corner.y, [load for load in forces.loads if load.seat is not None]
-    crossing = [x.name for x in loads if x.seat[0] + TOUCH < step < x.seat[1] - TOUCH]
+    step, seats = fillet.corner.y, {load.name: load.seat for load in forces.loads if load.seat}
+    crossing = [name for name, (lo, hi) in seats.items() if lo + TOUCH < step < hi - TOUCH]
     sections = [cut.of(forces) for cut in both_sides(fillet.reference, True, crossing)]
     return max(sections, key=lambda six: local_stress(fillet, six).rank)
 
