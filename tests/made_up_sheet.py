@@ -10,11 +10,13 @@ from solidgear.datasheet.facts import (
     Figure,
     Force,
     Frequency,
+    LesserSafety,
     MotionFact,
     Remark,
     Resonance,
     Speed,
     Trust,
+    UnratedCorner,
     WorstNotch,
     WorstSection,
 )
@@ -69,13 +71,25 @@ def made_up_sheet(**changes):
             Figure("C_z,thx@Rad", -1.31e-8, "rad/N", 0.0037),
             Figure("bending 1", 1576.25, "Hz", 0.0014, (-0.55, 0.15)),
         ),
-        "notch": WorstNotch(**notch, **safeties, least=(0.81, 1.02), open=(79e6, 83.5e6)),
+        "notch": WorstNotch(
+            **notch,
+            **safeties,
+            least=(0.81, 1.02),
+            open=(79e6, 83.5e6),
+            elsewhere=(
+                LesserSafety("yielding", "Welle", "R1", 0.012, 1.12),
+                LesserSafety("crack", "Welle", "R3", 0.0455, 0.98),
+            ),
+        ),
+        "corners": (UnratedCorner("Welle", 0.045), UnratedCorner("Welle", 0.0505)),
         "section": WorstSection("Welle", "a", 0.04, 61.5e6, 60e6, 8.25e6, 0.0),
         "bearings": (
             BearingFact("L1", "6206", 500.0, 0.0, "modified", 2.5e9, (1.5e9, 4e9), 29071.5, 8.84),
             BearingFact("L2", "", 1000.5, 350.25),
         ),
-        "motions": (MotionFact("Ritzel", 24.4e-6, 4.3e-9, 75e-6, 7.7e-8, (18.9e-6, 29.9e-6)),),
+        "motions": (
+            MotionFact("Ritzel", 24.4e-6, 4.3e-9, 75e-6, 7.7e-8, (18.9e-6, 29.9e-6), None, 49e-6),
+        ),
         "frequencies": (
             Frequency("bending 1", 1576.25, 0.0014, (-0.55, 0.15)),
             Frequency("torsion 1", 7834.5, 0.0022),

@@ -1,6 +1,8 @@
 """Shafts in equilibrium with their bearings, scenes with catalogue bearings, and their command."""
 
 import json
+import tomllib
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -11,6 +13,7 @@ from solidgear.bearings.ball import BallRow
 from solidgear.bearings.equilibrium import equilibrium
 from solidgear.bearings.roller import RollerRow
 from solidgear.bearings.rolling import RollingBearing
+from solidgear.bearings.sliding import condense_y
 from solidgear.bearings.solved import solved
 from solidgear.bearings.study import over_load
 from solidgear.core.errors import SceneError, SolidgearError
@@ -246,3 +249,69 @@ def test_a_bearing_without_load_tells_no_empty_range(tmp_path):
         "carries nothing" in told
         and "Range over the estimated inside, from soft to stiff" not in told
     )
+
+
+# ------------------------------------------------------------------------------- one ball carries
+FOUND = Path(__file__).parent / "found" / "design"
+LIGHT = FOUND / "light_ball_c3.toml"
+
+
+@pytest.mark.parametrize("support", ["floating", "locating"])
+@pytest.mark.parametrize("load", ["x=200 N", "x=2 N", "z=50 N", "z=-7 N", "x=3 N, z=4 N"])
+def test_a_ball_bearing_on_one_ball_has_a_life(load, support):
+    """Nothing holds the shaft across its load but for rounding; P is half of the load in a radial
+    bearing, and L10 = (C/P)^3.
+    """
+    tables = tomllib.loads(LIGHT.read_text("utf-8"))
+    tables["bearing"][1]["support"] = support
+    total = np.hypot(
+        *(float(part.split("=")[1][:-2]) for part in (f"{load}, y=0 N").split(", ")[:2])
+    )
+    found = sg.bearing(tables, load=load)
+    for fact in found.facts:
+        life = fact.life.life
+        assert life.equivalent.load == pytest.approx(total / 2, rel=1e-6)
+        ratio = life.rated.dynamic / life.equivalent.load
+        assert fact.life.lives["basic"] == pytest.approx(1e6 * ratio**3, rel=1e-9)
+
+
+def test_a_shaft_on_one_ball_a_bearing_has_no_error_bar_across_its_load():
+    deflected = sg.deflect(LIGHT, load="z=50 N")
+    x, _, z, *_ = deflected.judge.displacement["g"]
+    assert abs(x.value) < 1e-15 and x.bar is None
+    # 25 N on one ball press 12 um through half of the clearance, 10.25 um
+    assert 10e-6 < z.value < 15e-6 and 0 < z.bar < 1e-8
+    assert sum("nothing holds it across its load" in note for note in deflected.judge.notes) == 2
+
+
+def test_one_ball_holds_no_tilt_of_a_ring_that_slides():
+    """Along y and about z a ball at any angle is one spring: with y condensed nothing is left."""
+    angles = np.linspace(0.1, 1.0, 50)
+    zero = np.zeros(50)
+    arms = np.array([zero, np.sin(angles), zero, zero, zero, 0.0137 * np.cos(angles)]).T
+    assert not condense_y(3e5 * arms[:, :, None] * arms[:, None, :]).any()
+
+
+def test_rounding_of_a_stiffness_is_judged_by_its_largest_entry():
+    """-3e-14 N m/rad beside 4e7 N/m is none; -3 N m/rad is refused, and so is a spring too soft to
+    couple.
+    """
+    matrix = np.diag([4e7, 2e5, 1e7, 0.0, 0.0, -3e-14])
+    assert sg.Bearing(name="A", y=0.1, seat_width=0.01, matrix=matrix).matrix[5][5] == 0
+    turned = np.zeros((6, 6))
+    turned[:3:2, :3:2] = [[8e-26, 1.3e-9], [1.3e-9, 2e7]]  # along z but for the last digit
+    assert sg.Bearing(name="A", y=0.1, seat_width=0.01, matrix=turned).matrix[0] == (0.0,) * 6
+    for entries in ({"kxx": 4e7, "kthz": -3.0}, {"kxx": 4e7, "kx_thz": 1.0, "kthz": 1e-12}):
+        with pytest.raises(SceneError, match="must not be negative"):
+            sg.Bearing(name="A", y=0.1, seat_width=0.01, stiffness=entries)
+
+
+def test_a_catalogue_bearing_on_a_segment_has_its_own_width():
+    """A 6207 is 17 mm wide, on a segment of 60 mm, in whose middle it sits."""
+    scene = sg.load(FOUND / "bearing_on_segment.toml")
+    for bearing, middle in zip(scene.bearings, (0.03, 0.15)):
+        assert (bearing.y, bearing.seat_width) == pytest.approx((middle, 0.017))
+    tables = tomllib.loads((FOUND / "bearing_on_segment.toml").read_text("utf-8"))
+    del tables["bearing"][0]["catalogue"]
+    tables["bearing"][0]["stiffness"] = {"kxx": 1e8, "kyy": 1e8, "kzz": 1e8}
+    assert sg.load(tables).bearings[0].seat_width == pytest.approx(0.06)

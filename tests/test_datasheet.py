@@ -14,11 +14,13 @@ from made_up_sheet import made_up_shaft, made_up_sheet
 import solidgear as sg
 from solidgear.datasheet import command as command_module
 from solidgear.datasheet import page
+from solidgear.datasheet.at_rest import cautions_of_notch
 from solidgear.datasheet.browser import PROGRAMS, browser, pages_of
 from solidgear.datasheet.drawing import WIDE, shaft_svg
-from solidgear.datasheet.facts import DrawnShaft, Force, Frequency, Remark, Trust
+from solidgear.datasheet.facts import DrawnShaft, Force, Frequency, Remark, Trust, UnratedCorner
 from solidgear.datasheet.language import Language
 from solidgear.datasheet.messages import LANGUAGES, MESSAGES
+from solidgear.datasheet.sections import sections, tiles
 from solidgear.datasheet.shaft import resonances
 from solidgear.show.sketch import SEAT, SPAN
 from solidgear.show.units import ENGINEERING
@@ -357,3 +359,33 @@ def test_a_page_is_printed_smaller_until_it_is_one_sheet(tmp_path, monkeypatch):
     made_up_sheet().save(tmp_path / "sheet.pdf")
     assert zooms == ["1.0", "0.93", "0.86"]
     assert pages_of((tmp_path / "sheet.pdf").read_bytes()) == 1
+
+
+# ---------------------------------------------------------------------------- what a page must say
+def test_a_page_names_corners_without_a_rating_the_least_of_every_kind_and_the_whole_motion():
+    """24 um across and 49 um along are 54.7 um; two of five numbers would read better than all."""
+    page = made_up_sheet(corners=(UnratedCorner("Welle", 0.045),))
+    for code, corner, weak in (
+        ("en", "not rated: corner at 45 mm", "Against yielding R1 at y = 12 mm has less: 1.12."),
+        (
+            "de",
+            "ohne Nachweis: Kante bei 45 mm",
+            "Gegen Fließen hat R1 bei y = 12 mm weniger: 1,12.",
+        ),
+    ):
+        words = Language(code, ENGINEERING)
+        shown = {tile.label: tile for tile in tiles(page, words)}
+        assert corner in shown[words.say("tile fatigue")].place
+        assert shown[words.say("tile motion")].value.startswith(words.local("54.7"))
+        worst = next(s for s in sections(page, words) if s.key == "worst")
+        assert weak in worst.sentences and any("45 mm" in text for text in worst.sentences)
+    below = [remark.values["place"] for remark in cautions_of_notch(page.notch)]
+    assert below == ["R2", "R2", "R1", "R3"]
+
+
+@pytest.mark.slow
+def test_the_german_page_of_a_shaft_names_its_sharp_corner():
+    found = sg.sheet(Path(__file__).parent / "found" / "design" / "sharp_corner.toml")
+    words = Language("de", ENGINEERING)
+    assert [corner.y for corner in found.corners] == pytest.approx([0.1])
+    assert "Kante bei 100 mm" in next(tiles(found, words)).place

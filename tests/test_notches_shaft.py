@@ -124,11 +124,12 @@ def test_every_kind_has_its_rating_or_its_reason(tmp_path):
 
 
 def test_a_key_under_a_pressed_hub_has_the_excess_of_both(tmp_path):
-    alone, both = drawn(tmp_path, KEY), drawn(tmp_path, KEY, HUB)
-    hub = both["hub"].factors
+    alone = drawn(tmp_path, KEY) | drawn(tmp_path, HUB)
+    both = drawn(tmp_path, KEY, HUB)
     for load in ("bending", "torsion"):
-        expected = alone["key"].factors[load] + hub[load] - 1
-        assert both["key"].factors[load] == pytest.approx(expected, rel=1e-12)
+        expected = alone["key"].factors[load] + alone["hub"].factors[load] - 1
+        for name in ("key", "hub"):
+            assert both[name].factors[load] == pytest.approx(expected, rel=1e-12)
     assert "no factor for both" in both["key"].remark
     assert "beta" in both["key"].rating.assumed
 
@@ -155,7 +156,8 @@ def test_the_headline_and_json_speak_of_all_notches(run, tmp_path):
     flat = " ".join(said.split())
     assert code == 0
     assert 'Worst of 2 notches at keyway "key":' in flat
-    assert 'Not rated: flat "flat", 4 sharp corners.' in flat
+    corners = ", ".join(f"sharp corner at y = {y:.2f} mm" for y in (60, 130, 145, 225))
+    assert f"Not rated: {corners.replace('60.00', '60.000')} and 1 more." in flat
     assert 'not rated: flat "flat": DIN 743 has no notch factor for a flat.' in flat
     data = json.loads(run(*words, "--json")[1])
     (found,) = [each["found"] for each in data["shafts"].values()]

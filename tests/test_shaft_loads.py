@@ -208,6 +208,40 @@ def test_a_torque_turned_round_takes_the_other_flanks():
     assert driving.six(turns=-1.0) == pytest.approx(gear.six())
 
 
+def test_a_power_is_a_torque_at_the_speed_of_the_case():
+    """5.5 kW at 1500 rpm are 35.01 N m, at 500 rpm three times as much; brought to a shaft that
+    turns about -y, they turn it about -y.
+    """
+    hub = sg.ShaftLoad(name="hub", on="gear", power="5.5 kW")
+    cases = [sg.LoadCase(name=f"{n}", speed=f"{n} rpm") for n in (1500, 500)]
+    for turns, sign in ((None, 1), ("+y", 1), ("-y", -1)):
+        shaft = rod(hub, cases=cases).with_changes(turns=turns, torque_at="A")
+        for case, torque in zip(shaft.cases, (35.0141, 105.0423)):
+            load, *_ = acting_loads(shaft, case)
+            assert load.six[4] == pytest.approx(sign * torque, rel=1e-5)
+    teeth = {"pitch_diameter": 0.08, "towards": "+x", "sense": "driving"}
+    gear = sg.ShaftLoad(name="gear", on="gear", power=5500.0, **teeth)
+    same = sg.ShaftLoad(name="gear", on="gear", torque=5500.0 / 157.0796, **teeth)
+    for turns in (1.0, -1.0):
+        six = gear.six(turns=turns, speed=157.0796)
+        assert six == pytest.approx(same.six(turns=turns), rel=1e-9)
+    with pytest.raises(SolidgearError, match=r"load\[1\].power.* a torque at a speed"):
+        acting_loads(rod(hub))
+    with pytest.raises(SolidgearError, match="either torque or power"):
+        sg.ShaftLoad(on="gear", power="1 kW", torque="2 N*m")
+
+
+@pytest.mark.parametrize("written", [6000, "6000 h", "250 day", "360000 min", "2.16e7 s"])
+def test_hours_are_plain_or_with_a_unit_of_time(written):
+    assert sg.LoadCase(name="a", hours=written).hours == pytest.approx(6000, rel=1e-12)
+
+
+@pytest.mark.parametrize(("written", "says"), [("6000", "hours"), ("6 kg", "6000 h"), (-1, "zero")])
+def test_hours_without_a_unit_of_time_are_refused(written, says):
+    with pytest.raises(SolidgearError, match=says):
+        sg.LoadCase(name="a", hours=written)
+
+
 BAD = {
     "off the shaft": (
         'name = "gear 3"\non = "gear 3"\ntangential_force',

@@ -15,6 +15,8 @@ import numpy as np
 FURTHEST = 5e-3
 #: m; rounding of the places of grooves, and below it that of a balance
 _ROUNDING = 1e-18
+#: share of two terms below which their difference is rounding
+CANCELLED = 1e-14
 _MOST = 200
 
 Along = Callable[[np.ndarray], np.ndarray]
@@ -58,4 +60,7 @@ def condense_y(stiffness: np.ndarray, spring: float = 0.0) -> np.ndarray:
     """Return the stiffness (..., 6, 6) on a ring that slides along y on a spring, N/m."""
     soft = (stiffness[..., 1, 1] + spring)[..., None, None]
     outer = stiffness[..., :, 1, None] * stiffness[..., None, 1, :]
-    return stiffness - outer / np.where(soft > 0, soft, 1.0)
+    held = outer / np.where(soft > 0, soft, 1.0)
+    left = stiffness - held
+    # one ball that carries holds no tilt on a ring that slides: both cancel to rounding
+    return np.where(np.abs(left) > CANCELLED * np.abs(held), left, 0.0)

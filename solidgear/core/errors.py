@@ -125,18 +125,24 @@ class SceneError(SolidgearError, ValueError):
 
     @property
     def sentence(self) -> str:
-        """First problem alone, in one line."""
+        """First problem alone, in one line, without the lines that a file lacks."""
+        reason = self.reason.partition("\n\n")[0]
         place = " = ".join(
             part for part in (self.field or ".".join(map(str, self.path)), self.value) if part
         )
         return printable(
-            ": ".join(part for part in (_file_name(self.where), place, self.reason) if part)
+            ": ".join(part for part in (_file_name(self.where), place, reason) if part)
         )
+
+    @property
+    def lacking(self) -> str:
+        """Lines that the file lacks, which the reason ends with; empty where it names none."""
+        return self.reason.partition("\n\n")[2]
 
     def __str__(self) -> str:
         count = len(self.others)
         if not count:
-            return self.sentence
+            return "\n\n".join(filter(None, [self.sentence, self.lacking]))
         if not self.where:  # a scene made in Python: the rest is in `problems`
             more = "1 more problem" if count == 1 else f"{count} more problems"
             return f"{self.sentence} (and {more}: see its problems)"
@@ -146,6 +152,7 @@ class SceneError(SolidgearError, ValueError):
         ]
         if count + 1 > MOST_PROBLEMS:
             lines.append(f"  and {count + 1 - MOST_PROBLEMS} more")
+        lines += [f"\n{p.lacking}" for p in self.problems[:MOST_PROBLEMS] if p.lacking]
         return "\n".join(lines)
 
     def located(
@@ -366,8 +373,8 @@ def _plain_error(entry: Mapping, data: Any) -> SceneError:
 WRITE = {
     "material": 'write material = "steel", or a table with E, nu and density',
     "segment": 'write segment = [{ kind = "cylinder", name = ..., length = ..., diameter = ... }, ...]',
-    "port": 'write port = { name = "gear", at = "SEGMENT.middle", attach_to = "SEGMENT" } with the '
-    "name of a segment: the point where the gear acts",
+    "port": "it is the point where the gear acts: add these lines at the end of the file, with the name of "
+    'a segment:\n\n[port]\nname = "gear"\nat = "SEGMENT.middle"\nattach_to = "SEGMENT"',
 }
 
 

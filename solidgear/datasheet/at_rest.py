@@ -16,16 +16,19 @@ from solidgear.core.scene.load_rules import ONLY
 from solidgear.datasheet.facts import (
     BearingFact,
     Force,
+    LesserSafety,
     MotionFact,
     Range,
     Remark,
     Trust,
+    UnratedCorner,
     WorstNotch,
     WorstSection,
 )
 from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.deflection.shaft import BearingState
-from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
+from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft, lesser_elsewhere
+from solidgear.strength.stress.rating import Rating
 from solidgear.strength.stress.shaft import Notch
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
@@ -121,7 +124,9 @@ def _turns(bearing: Bearing) -> bool:
 
 
 def worst_notch(stressed: StressAtRest) -> WorstNotch | None:
-    """Return the notch with the least safety, without one that with the largest stress."""
+    """Return the notch with the least safety against fatigue, without one that with the largest
+    stress.
+    """
     worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.worst]
     if not worst:
         return None
@@ -140,6 +145,22 @@ def worst_notch(stressed: StressAtRest) -> WorstNotch | None:
         assumed=() if rating is None else rating.assumed,
         least=None if rating is None else rating.least,
         open=shaft.open.get(notch.name),
+        elsewhere=() if rating is None else tuple(_elsewhere(stressed, rating)),
+    )
+
+
+def _elsewhere(stressed: StressAtRest, worst: Rating) -> Iterator[LesserSafety]:
+    """Yield the safeties that other notches have less of than that of the least against fatigue."""
+    for kind, least in lesser_elsewhere(stressed.shafts, worst):
+        yield LesserSafety(kind, least.shaft.name, least.notch.name, least.notch.y, least.value)
+
+
+def sharp_corners(stressed: StressAtRest) -> tuple[UnratedCorner, ...]:
+    """Return the sharp corners of all shafts, which have no stress and no rating."""
+    return tuple(
+        UnratedCorner(shaft.name, corner.y)
+        for shaft in stressed.shafts
+        for corner in shaft.found.sharp
     )
 
 
@@ -227,14 +248,17 @@ def motions(deflected: Deflections, ports: Collection[str] = ()) -> tuple[Motion
 
 
 def _motion(place: str, six: Sequence[Measured]) -> MotionFact:
-    across, about = (six[0], six[2]), (six[3], six[5])
+    across, along, about = (six[0], six[2]), (six[1],), (six[3], six[5])
     return MotionFact(
         place=place,
         radial=_size(across),
         radial_bar=_size_of_bars(across),
+        axial=_size(along),
+        axial_bar=_size_of_bars(along),
         tilt=_size(about),
         tilt_bar=_size_of_bars(about),
         open=_size_open(across),
+        open_axial=_size_open(along),
         open_tilt=_size_open(about),
     )
 
@@ -304,7 +328,12 @@ def cautions_of_notch(worst: WorstNotch | None) -> Iterator[Remark]:
     """Yield cautions on safeties below the least that the norm asks for."""
     if worst is None or worst.fatigue is None or worst.yielding is None:
         return
-    for kind, safety in (("fatigue", worst.fatigue), ("yielding", worst.yielding)):
+    safeties = [
+        (worst.place, "fatigue", worst.fatigue),
+        (worst.place, "yielding", worst.yielding),
+        *((other.place, other.kind, other.safety) for other in worst.elsewhere),
+    ]
+    for place, kind, safety in safeties:
         if safety < LEAST_SAFETY:
-            values = {"place": worst.place, "safety": f"{safety:.2f}", "least": f"{LEAST_SAFETY:g}"}
+            values = {"place": place, "safety": f"{safety:.2f}", "least": f"{LEAST_SAFETY:g}"}
             yield Remark(f"caution {kind}", values)

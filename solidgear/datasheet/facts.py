@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from datetime import date
@@ -107,8 +108,27 @@ class Trust:
 
 
 @dataclass(frozen=True)
+class LesserSafety:
+    """A safety of one kind that is least at another notch than that against fatigue is."""
+
+    kind: str  #: ``yielding`` or ``crack``
+    shaft: str
+    place: str
+    y: float  #: m
+    safety: float
+
+
+@dataclass(frozen=True)
+class UnratedCorner:
+    """A sharp corner, whose safety nothing gives."""
+
+    shaft: str
+    y: float  #: m
+
+
+@dataclass(frozen=True)
 class WorstNotch:
-    """The notch with the least safety, or the largest stress where none is rated."""
+    """The notch with the least safety against fatigue, or the largest stress where none is rated."""
 
     shaft: str
     place: str
@@ -123,6 +143,8 @@ class WorstNotch:
     #: safeties against fatigue and yielding with K_1 of the steels that fall most; None where known
     least: tuple[float, float] | None = None
     open: Range = None  #: least and largest amplitude over open data, Pa
+    #: safeties of other kinds that are less at other notches
+    elsewhere: tuple[LesserSafety, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -169,6 +191,15 @@ class MotionFact:
     tilt_bar: float | None
     open: Range = None  #: of the radial motion, m
     open_tilt: Range = None
+    #: axial, axial_bar: size along the shaft and its error bar, m
+    axial: float = 0.0
+    axial_bar: float | None = None
+    open_axial: Range = None
+
+    @property
+    def size(self) -> float:
+        """Size of the whole motion, m."""
+        return math.hypot(self.radial, self.axial)
 
 
 @dataclass(frozen=True)
@@ -207,6 +238,7 @@ class Facts:
     drawn: tuple[DrawnShaft, ...] = ()
     figures: tuple[Figure, ...] = ()  #: the numbers asked for
     notch: WorstNotch | None = None
+    corners: tuple[UnratedCorner, ...] = ()  #: sharp ones, of all shafts
     section: WorstSection | None = None
     bearings: tuple[BearingFact, ...] = ()
     motions: tuple[MotionFact, ...] = ()

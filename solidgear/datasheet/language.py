@@ -60,7 +60,7 @@ class Language:
                 return f"{self.as_written(value.value, value.unit)} {self.units.unit(value.unit)}"
             return self.text(value.value, value.unit, value.digits)
         if isinstance(value, Place):
-            return f"{self.length(round(value.y, PLACE))} {self.units.unit('m')}"
+            return self.place(value.y)
         if isinstance(value, Speed):
             return self.speed(value.value)
         if isinstance(value, Term):
@@ -70,6 +70,10 @@ class Language:
         if isinstance(value, Remark):
             return self.sentence(value)
         return str(value)
+
+    def place(self, y: float) -> str:
+        """Return a place along a shaft, m, with its unit."""
+        return f"{self.length(round(y, PLACE))} {self.units.unit('m')}"
 
     def local(self, number: str) -> str:
         """Return a number with the decimal mark of the language."""

@@ -41,6 +41,11 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "section verdict": ("Verdict", "Urteil"),
     # tiles
     "tile fatigue": ("Safety against fatigue", "Sicherheit gegen Dauerbruch"),
+    "tile corner": ("not rated: corner at {places}", "ohne Nachweis: Kante bei {places}"),
+    "tile corners": (
+        "not rated: {count} sharp corners",
+        "ohne Nachweis: {count} scharfe Kanten",
+    ),
     "tile stress": ("Largest notch stress", "Größte Kerbspannung"),
     "tile nominal": ("Largest nominal stress", "Größte Nennspannung"),
     "tile life": ("Shortest bearing life", "Kürzeste Lagerlebensdauer"),
@@ -61,6 +66,7 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "static": ("S0", "S0"),
     "place": ("place", "Stelle"),
     "across": ("across", "quer"),
+    "along": ("along", "längs"),
     "tilt": ("tilt", "Neigung"),
     "mode": ("mode", "Eigenform"),
     "critical": ("order 1 at", "1. Ordnung bei"),
@@ -96,8 +102,8 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Spanne: durch geschätzte Innenmaße, Luftklassen und Sauberkeit.",
     ),
     "note motions": (
-        "Size of the motion across the shaft and of the tilt of its axis, from the unloaded state.",
-        "Betrag der Verschiebung quer zur Welle und der Neigung der Achse gegen den unbelasteten Zustand.",
+        "Size of the motion across the shaft, along it, and of the tilt of its axis, from the unloaded state.",
+        "Betrag der Verschiebung quer zur Welle, längs und der Neigung der Achse gegen den unbelasteten Zustand.",
     ),
     "note spin": (
         "Without gyroscopic effects.",
@@ -153,6 +159,25 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "worst rated": (
         "Safety by DIN 743: {fatigue} against fatigue, {yielding} against yielding.",
         "Sicherheit nach DIN 743: {fatigue} gegen Dauerbruch, {yielding} gegen Fließen.",
+    ),
+    "worst yielding": (
+        "Against yielding {place} at y = {y} has less: {safety}.",
+        "Gegen Fließen hat {place} bei y = {y} weniger: {safety}.",
+    ),
+    "worst crack": (
+        "Against a first crack {place} at y = {y} has less: {safety}.",
+        "Gegen Anriss hat {place} bei y = {y} weniger: {safety}.",
+    ),
+    "worst corner": (
+        "Not rated: the sharp corner at y = {places}, where the safety may be less; give it a fillet.",
+        "Ohne Nachweis: die scharfe Kante bei y = {places}, deren Sicherheit geringer sein kann; mit einer "
+        "Rundung wird sie bewertet.",
+    ),
+    "worst corners": (
+        "Not rated: {count} sharp corners at y = {places}, where the safety may be less; give them "
+        "fillets.",
+        "Ohne Nachweis: {count} scharfe Kanten bei y = {places}, deren Sicherheit geringer sein kann; mit "
+        "Rundungen werden sie bewertet.",
     ),
     "worst section": (
         "Largest nominal stress: {equivalent} (von Mises) in segment {segment} at y = {y}; bending "
@@ -299,6 +324,10 @@ MESSAGES: dict[str, tuple[str, str]] = {
     "caution yielding": (
         "{place}: safety against yielding {safety} is below the {least} of DIN 743.",
         "{place}: Sicherheit gegen Fließen {safety} liegt unter {least} nach DIN 743.",
+    ),
+    "caution crack": (
+        "{place}: safety against a first crack {safety} is below the {least} of DIN 743.",
+        "{place}: Sicherheit gegen Anriss {safety} liegt unter {least} nach DIN 743.",
     ),
     "caution speed": (
         "The {order} meets {mode} at {critical}, {off} from the speed.",

@@ -28,9 +28,13 @@ from solidgear.show.words import DASH
 #: SI unit of a stress
 STRESS = "Pa stressed"
 #: rows of a table, and sentences of a section, that one page holds
-MOST_ROWS, MOST_MOTIONS, MOST_SENTENCES = 10, 5, 6
+MOST_ROWS, MOST_MOTIONS, MOST_SENTENCES, MOST_CORNERS = 10, 5, 6, 6
 #: hours from which on a life is as good as without end
 ENDLESS = 1e6
+
+
+#: messages on safeties that are less at another notch
+LESSER = {"yielding": "worst yielding", "crack": "worst crack"}
 
 
 @dataclass(frozen=True)
@@ -97,7 +101,8 @@ def tiles(facts: Facts, words: Language) -> Iterator[Tile]:
     notch, section = facts.notch, facts.section
     if notch is not None and notch.fatigue is not None:
         look = "bad" if notch.fatigue < 1 else ""
-        yield Tile(_safety(notch.fatigue, words), words.say("tile fatigue"), notch.place, look)
+        place = ", ".join([notch.place, *_corners(facts, words, "tile corner", "tile corners")])
+        yield Tile(_safety(notch.fatigue, words), words.say("tile fatigue"), place, look)
     elif notch is not None:
         stress = words.text(notch.amplitude, STRESS, 3)
         yield Tile(stress, words.say("tile stress"), notch.place)
@@ -109,8 +114,8 @@ def tiles(facts: Facts, words: Language) -> Iterator[Tile]:
         worst = min(lives, key=lambda b: (b.life or math.inf) if b.hours is None else b.hours)
         yield Tile(_life(worst, words), words.say("tile life"), worst.name)
     if facts.motions:
-        most = max(facts.motions, key=lambda motion: motion.radial)
-        moved = words.text(most.radial, "m moved", 3)
+        most = max(facts.motions, key=lambda motion: motion.size)
+        moved = words.text(most.size, "m moved", 3)
         yield Tile(moved, words.say("tile motion"), most.place)
     if facts.frequencies:
         first = min(facts.frequencies, key=lambda frequency: frequency.hz)
@@ -216,10 +221,16 @@ def _worst(facts: Facts, words: Language) -> Section:
         if notch.fatigue is not None and notch.yielding is not None:
             fatigue, yielding = (_safety(s, words) for s in (notch.fatigue, notch.yielding))
             sentences.append(words.say("worst rated", fatigue=fatigue, yielding=yielding))
+        for other in notch.elsewhere:
+            place = _of_shaft(other.place, other.shaft, facts, words)
+            value = _safety(other.safety, words)
+            key = LESSER[other.kind]
+            sentences.append(words.say(key, place=place, y=Place(other.y), safety=value))
         if notch.least is not None:
             fatigue, yielding = (_safety(s, words) for s in notch.least)
             sentences.append(words.say("worst least", fatigue=fatigue, yielding=yielding))
     sentences += _absent(facts, words, "worst") + _absent(facts, words, "notch")
+    sentences += _corners(facts, words, "worst corner", "worst corners")
     if section is not None:
         place = _of_shaft(section.segment, section.shaft, facts, words)
         stresses = {
@@ -228,6 +239,20 @@ def _worst(facts: Facts, words: Language) -> Section:
         }
         sentences.append(words.say("worst section", segment=place, y=Place(section.y), **stresses))
     return Section("worst", title, sentences=tuple(sentences))
+
+
+def _corners(facts: Facts, words: Language, single: str, several: str) -> Iterator[str]:
+    """Yield the message on the sharp corners, which are not rated, by its key of one or of more."""
+    places = [words.place(corner.y) for corner in facts.corners]
+    if facts.train:
+        places = [
+            _of_shaft(place, corner.shaft, facts, words)
+            for place, corner in zip(places, facts.corners)
+        ]
+    if places:
+        key, more = single if len(places) == 1 else several, len(places) - MOST_CORNERS
+        named = words.listed(tuple(places[:MOST_CORNERS])) + (f" + {more}" if more > 0 else "")
+        yield words.say(key, count=len(places), places=named)
 
 
 def _of_shaft(place: str, shaft: str, facts: Facts, words: Language) -> str:
@@ -316,8 +341,10 @@ def _motions(facts: Facts, words: Language) -> Section:
     rows = []
     for motion in facts.motions[:MOST_MOTIONS]:
         across = motion.radial, motion.radial_bar, motion.open, "m moved"
+        along = motion.axial, motion.axial_bar, motion.open_axial, "m moved"
         about = motion.tilt, motion.tilt_bar, motion.open_tilt, "rad moved"
-        for head, (size, bar, open_, si) in (("across", across), ("tilt", about)):
+        parts = (("across", across), ("along", along), ("tilt", about))
+        for head, (size, bar, open_, si) in parts if motion.axial else (parts[0], parts[2]):
             share = bar / size if bar is not None and size else None
             value = Cell(size, "strong", words.with_bar(size, si, share))
             row: list[Any] = [motion.place, words.say(head), value, words.bar(share)]

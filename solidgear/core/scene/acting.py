@@ -55,9 +55,13 @@ def acting_loads(scene: Scene, case: LoadCase | None = None) -> tuple[ActingLoad
     """
     case = named_case(scene.cases) if case is None else case
     out = []
-    for load in loads_of(scene):
+    for k, load in enumerate(loads_of(scene)):
         if factor := case.factor(load.name):
-            six, y = load.six(factor, turning(scene.turns)), _place(load.station, scene)
+            y = _place(load.station, scene)
+            try:
+                six = load.six(factor, turning(scene.turns), case.speed)
+            except SceneError as error:
+                raise error.located(None, prefix=("load", k)) from None
             out.append(ActingLoad(load.name, load.station, y, six, factor))
     remainder = fsum(load.six[4] for load in out)
     if abs(remainder) <= EXACT * fsum(abs(load.six[4]) for load in out):

@@ -31,6 +31,8 @@ def _entry_names() -> dict[str, tuple[int, int, str]]:
     return names
 
 
+#: share of the largest entry of a matrix that is rounding of it
+ROUNDING = 1e-14
 #: name of a stiffness entry -> (row, column, dimension); 21 names make the symmetric 6x6
 STIFFNESS_NAMES = _entry_names()
 #: words of catalogues -> entries, for hints
@@ -108,9 +110,35 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
             f"and ({DOF_NAMES[b]}, {DOF_NAMES[a]}) is {K[b, a]:.6g}"
         )
     K = (K + K.T) / 2
-    # a matrix turned by a rotation couples what has no stiffness of its own by rounding only
-    bare = np.diag(K) == 0
-    K[(bare[:, None] | bare) & (np.abs(K) <= 1e-14 * np.abs(K).max())] = 0.0
+    # a spring turned by the last digit of an angle has rounding across, and its square on the diagonal
+    bare = np.abs(np.diag(K)) <= ROUNDING**2 * np.abs(K).max()
+    K[(bare[:, None] | bare) & (np.abs(K) <= ROUNDING * np.abs(K).max())] = 0.0
+    while (least := _least_eigenvalue(K))[0] < -1e-9:
+        eigenvalue, (first, second) = least
+        i = min(first, second, key=lambda k: K[k, k])
+        # where contacts hold a direction no more, its row is rounding of the others
+        if 0 < np.abs(K[i]).max() <= ROUNDING * np.abs(K).max():
+            K[i] = K[:, i] = 0.0
+            continue
+        if K[i, i] < 0:
+            raise SceneError(
+                f"the stiffness in {DOF_NAMES[i]} is {K[i, i]:.6g}; it must not be negative"
+            )
+        raise SceneError(
+            f"the stiffness is indefinite in the pair ({DOF_NAMES[first]}, {DOF_NAMES[second]}): "
+            f"their entries are {K[first, first]:.6g} and {K[second, second]:.6g}, coupled by "
+            f"{K[first, second]:.6g}, "
+            "and the smallest eigenvalue, with the diagonal scaled to 1, "
+            f"is {eigenvalue:.3g}; it must not be negative"
+        )
+    return tuple(tuple(row) for row in K.tolist())
+
+
+def _least_eigenvalue(K: np.ndarray) -> tuple[float, tuple[int, int]]:
+    """Return the least eigenvalue of a stiffness with its diagonal scaled to 1, and the two motions
+    that have most of it.
+    """
+    size = np.sqrt(np.abs(np.diag(K)))
     # unit-free: a row with no stiffness of its own is scaled so that its largest coupling becomes
     # 1, hence indefinite
     for row_index in np.flatnonzero(size == 0):
@@ -119,20 +147,8 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
         size[row_index] = coupling.max() or 1.0
     # one size after the other: the product of two tiny ones is zero
     eigenvalue, vector = np.linalg.eigh(K / size[:, None] / size)
-    if eigenvalue[0] < -1e-9:
-        a, b = sorted(np.argsort(-np.abs(vector[:, 0]), kind="stable")[:2])
-        if K[a, a] < 0 or K[b, b] < 0:
-            i = a if K[a, a] < 0 else b
-            raise SceneError(
-                f"the stiffness in {DOF_NAMES[i]} is {K[i, i]:.6g}; it must not be negative"
-            )
-        raise SceneError(
-            f"the stiffness is indefinite in the pair ({DOF_NAMES[a]}, {DOF_NAMES[b]}): "
-            f"their entries are {K[a, a]:.6g} and {K[b, b]:.6g}, coupled by {K[a, b]:.6g}, "
-            "and the smallest eigenvalue, with the diagonal scaled to 1, "
-            f"is {eigenvalue[0]:.3g}; it must not be negative"
-        )
-    return tuple(tuple(row) for row in K.tolist())
+    a, b = sorted(np.argsort(-np.abs(vector[:, 0]), kind="stable")[:2])
+    return float(eigenvalue[0]), (int(a), int(b))
 
 
 #: entries of a stiffness by name, as files write them

@@ -2,14 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Annotated
-
-from pydantic import Field, model_validator
+from pydantic import model_validator
 
 from solidgear.core.errors import SceneError
 from solidgear.core.scene.places import Name
 from solidgear.core.scene.typed import Model
-from solidgear.core.scene.units import Ratio, Speed, TimeShare
+from solidgear.core.scene.units import Hours, Ratio, Speed, TimeShare
 
 
 class LoadCase(Model):
@@ -53,7 +51,7 @@ class LoadCase(Model):
     #: share of the time of a duty table; of every case or of none
     share: TimeShare | None = None
     #: hours of a duty table; of every case or of none
-    hours: Annotated[float, Field(gt=0)] | None = None
+    hours: Hours | None = None
 
     @model_validator(mode="after")
     def _one_measure(self) -> LoadCase:

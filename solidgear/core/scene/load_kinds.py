@@ -24,9 +24,9 @@ KINDS: dict[str, tuple[str, ...]] = {
 }
 #: further words of every kind
 FURTHER: dict[str, tuple[str, ...]] = {
-    "components": ("torque",),
-    "gear": ("torque", "towards", "sense"),
-    "belt": ("torque", "towards", "sense"),
+    "components": ("torque", "power"),
+    "gear": ("torque", "power", "towards", "sense"),
+    "belt": ("torque", "power", "towards", "sense"),
     "weight": ("towards",),
     "force": ("towards",),
 }
@@ -43,7 +43,7 @@ NEEDED: dict[str, tuple[tuple[str, ...], ...]] = {
     "components": (),
     "gear": (
         ("", "pitch_diameter"),
-        ("", "torque", "tangential_force"),
+        ("", "torque", "tangential_force", "power"),
         ("", "towards"),
         ("helix_angle", "hand"),
         ("hand", "helix_angle"),
@@ -78,21 +78,21 @@ def check_words(load: Any) -> None:
             f"{first_words[second]} {A_KIND[second]}; keep one, or write two loads",
             path=(str(first_words[second]),),
         )
-    if not kinds and load.torque is None:
+    if not kinds and load.torque is None and load.power is None:
         raise SceneError(
-            "gives no force: write x, y, z, thx, thz or torque; torque with pitch_diameter (a gear) or "
+            "gives no force: write x, y, z, thx, thz, torque or power; torque with pitch_diameter (a gear) or "
             "diameter (a belt); mass; or radial and axial",
             path=(),
         )
     kind = kind_of(load)
-    for word in ("torque", "towards", "sense"):
+    for word in ("torque", "power", "towards", "sense"):
         if word not in FURTHER[kind] and getattr(load, word) is not None:
             raise SceneError(f"does not belong to {A_KIND[kind]}", path=(word,))
     _ask_for_words(load, kind)
-    if load.torque is not None and load.tangential_force is not None:
-        raise SceneError(
-            "give either torque or tangential_force, not both", path=("tangential_force",)
-        )
+    turned_by = [w for w in ("torque", "tangential_force", "power") if getattr(load, w) is not None]
+    if len(turned_by) > 1:
+        first, second = turned_by[:2]
+        raise SceneError(f"give either {first} or {second}, not both", path=(second,))
 
 
 def _ask_for_words(load: Any, kind: str) -> None:

@@ -34,6 +34,7 @@ from solidgear.core.scene.units import (
     Position,
     PositiveLength,
     PositiveLoad,
+    Power,
     PressureAngle,
     SignedAngle,
     SpiralAngle,
@@ -93,6 +94,9 @@ class ShaftLoad(Placed):
         Forces along the axes, N, and moments about x and z, N m.
     torque : float or None
         Moment about the axis, N m, positive about +y; also of gears and belts.
+    power : float or None
+        In place of a torque: power at the speed of the case, W, positive where it is brought to the
+        shaft.
     pitch_diameter, tangential_force, pressure_angle, helix_angle, hand, pitch_angle, apex
         Of a gear: reference diameter at the middle of the face, force in place of a torque, pressure
         angle in the normal section (20 degrees by default), helix or spiral angle with its hand,
@@ -159,6 +163,9 @@ class ShaftLoad(Placed):
     thz: Torque | None = None
     #: moment about the axis, N m, positive about +y; also of a gear or a belt
     torque: Torque | None = None
+    #: in place of a torque: power at the speed of the case, W, positive where it is brought to the shaft;
+    #: a size with `sense`
+    power: Power | None = None
     #: of a gear: reference diameter at the middle of its face, m
     pitch_diameter: Diameter | None = None
     #: of a gear, in place of a torque: tangential force with the sign of the torque, N
@@ -256,7 +263,7 @@ class ShaftLoad(Placed):
 
     def pulls(self) -> tuple[float, float] | None:
         """Return the pulls of the tight and the slack side of a belt, N; None of another load."""
-        if self.kind != "belt" or self.diameter is None:
+        if self.kind != "belt" or self.diameter is None or self.power is not None:
             return None
         numbers = {word: getattr(self, word) for word in PULLS if getattr(self, word) is not None}
         if self.torque is None and self.sense is None:
@@ -267,7 +274,46 @@ class ShaftLoad(Placed):
             )
         return pulls(numbers, self.diameter)
 
-    def six(self, factor: float = 1.0, turns: float = 1.0) -> np.ndarray:
+    def at_speed(self, speed: float | None, turns: float = 1.0) -> ShaftLoad:
+        """Return the load with the torque of its power.
+
+        Parameters
+        ----------
+        speed : float or None
+            Speed of the shaft, rad/s, which a power needs.
+        turns : float
+            1 for a shaft that turns about +y, -1 for one about -y.
+
+        Returns
+        -------
+        ShaftLoad
+
+        Raises
+        ------
+        SceneError
+            A power without a speed.
+
+        Examples
+        --------
+        >>> from solidgear import ShaftLoad
+        >>> motor = ShaftLoad(on="coupling", power="5.5 kW")
+        >>> round(motor.at_speed(157.08).torque, 2)
+        35.01
+        """
+        if self.power is None:
+            return self
+        if not speed:
+            raise SceneError(
+                'a power gives a torque at a speed: write [[case]] with speed = "1500 rpm", or '
+                "torque in place of power",
+                path=("power",),
+            )
+        way = turns if self.sense is None else 1.0
+        return self.with_changes(power=None, torque=way * self.power / speed)
+
+    def six(
+        self, factor: float = 1.0, turns: float = 1.0, speed: float | None = None
+    ) -> np.ndarray:
         """Return the load on the axis, times a factor.
 
         Parameters
@@ -277,12 +323,16 @@ class ShaftLoad(Placed):
             and a belt pulls with its other side.
         turns : float
             1 for a shaft that turns about +y, -1 for one about -y, for which `sense` asks.
+        speed : float, optional
+            Speed of the shaft, rad/s, for which `power` asks.
 
         Returns
         -------
         (6,) array
             x, y, z in N, thx, thy (the torque), thz in N m.
         """
+        if self.power is not None:
+            return self.at_speed(speed, turns).six(factor, turns)
         way = 1.0 if self.sense is None else turns * (1.0 if self.sense == "driven" else -1.0)
         if self.kind == "gear":
             return self._teeth().six(factor * way * self._tooth_torque())
@@ -327,7 +377,7 @@ class ShaftLoad(Placed):
         if self.kind == "gear" and self.pressure_angle is None:
             out.append(f"{self.name}: pressure angle 20 deg assumed")
         sides = self.pulls()
-        if sides is not None and sides[1] > 0:
+        if (sides is not None and sides[1] > 0) or (self.kind == "belt" and self.power is not None):
             out.append(f"{self.name}: both strands of the belt are taken as parallel")
         return tuple(out)
 

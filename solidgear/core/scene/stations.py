@@ -240,7 +240,9 @@ class Bearing(Placed):
         if words.on is not None:
             reason = "a bearing on a segment has its place and width; leave one of them out"
             words.refuse(reason, "position", "from_", "face", "seat_width", table=table)
-            return _on_surface(places.span_of(words.on, "on"))
+            on_segment = _on_surface(places.span_of(words.on, "on"))
+            width = _width_of(table.get("catalogue"))
+            return on_segment if width is None else {**on_segment, "seat_width": width}
         if face is None:
             words.require("position", 'write position = "28 mm" with from, or face = "start"')
             return {"y": words.y(places)}

@@ -16,7 +16,8 @@ from pydantic import AfterValidator, Field
 from solidgear.core.errors import SceneError, show
 from solidgear.core.scene.written import Measure, Range, Three
 
-#: dimension -> (SI unit, example as text, allowed powers of the radian). pint holds the radian to
+#: dimension -> (unit of a plain number, SI but for hours, example as text, allowed powers of the
+#: radian). pint holds the radian to
 #: be dimensionless, so N, N/rad and N*rad look alike to it; the power is what sets an angle apart
 #: from a ratio, and rpm from Hz.
 DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
@@ -35,6 +36,8 @@ DIMENSIONS: dict[str, tuple[str, str, tuple[int, ...]]] = {
     "speed": ("rad/s", "3000 rpm", (1,)),
     "viscosity": ("m^2/s", "68 mm^2/s", (0,)),
     "temperature": ("K", "10 K", (0,)),
+    "time": ("h", "6000 h", (0,)),
+    "power": ("W", "5.5 kW", (0,)),
     "dimensionless": ("", "0.3", (0,)),
 }
 
@@ -57,6 +60,9 @@ _STRESS, _DENSITY = _dimension(mass=1, length=-1, time=-2), _dimension(mass=1, l
 _PER_LENGTH, _FORCE = _dimension(mass=1, time=-2), _dimension(mass=1, length=1, time=-2)
 _VISCOSITY = _dimension(length=2, time=-1)
 _MOMENT, _INERTIA = _dimension(mass=1, length=2, time=-2), _dimension(mass=1, length=2)
+_TIME = _dimension(time=1)
+#: s; plain numbers of times are hours
+HOUR = 3600.0
 #: units of nearly every scene: (SI units in one, power of the radian, dimension). The numbers are
 #: those of pint (a test compares), without the half second that pint takes to start
 COMMON: dict[str, tuple[float, float, Dimension]] = {
@@ -80,6 +86,8 @@ COMMON: dict[str, tuple[float, float, Dimension]] = {
         (_RATE, 1.0, {"rad/s": 1.0, "rpm": 0.10471975511966}),
         (_VISCOSITY, 0.0, {"m^2/s": 1.0, "mm^2/s": 1e-6, "cSt": 1e-6}),
         (_dimension(temperature=1), 0.0, {"K": 1.0}),
+        (_TIME, 0.0, {"h": 3600.0, "min": 60.0, "s": 1.0}),
+        (_dimension(mass=1, length=2, time=-3), 0.0, {"W": 1.0, "kW": 1e3, "MW": 1e6}),
     )
     for unit, factor in units.items()
 }
@@ -176,8 +184,9 @@ def _read_text(text: str, dimension: str) -> float:
     number, unit = float(match["number"]), match["unit"]
     if not unit:
         if si:
+            plain = "hours" if dimension == "time" else f"SI ({si})"
             raise wrong(
-                f"has no unit: write a plain number (without quotes) for SI ({si}), "
+                f"has no unit: write a plain number (without quotes) for {plain}, "
                 f'or add a unit as in "{example}"'
             )
         return number
@@ -191,6 +200,13 @@ def _read_text(text: str, dimension: str) -> float:
         kind_name = dimension.replace("_", " ")
         kind = f"not a unit of {kind_name}" if si else "a unit, but this is a plain ratio"
         raise wrong(f'{show(unit)} is {kind}; write for example "{example}"')
+    return _as_plain(number, factor, dimensionality)
+
+
+def _as_plain(number: float, factor: float, dimensionality: Dimension) -> float:
+    """Return a number in units of a factor as a plain one: in SI, and of a time in hours."""
+    if dimensionality == _TIME:
+        return number * (factor / HOUR) if factor >= HOUR else number / (HOUR / factor)
     return _in_si(number, factor)
 
 
@@ -216,9 +232,10 @@ def with_unit_of(written: Any, value: Any) -> Any:
     factors = si_factor(match["unit"]) if match and match["unit"] else None
     if factors is None or match is None or isinstance(value, bool | str):
         return value
+    size = factors[0] / HOUR if factors[2] == _TIME else factors[0]
     for digits in range(1, 18):
-        text = f"{value / factors[0]:.{digits}g}"
-        if _in_si(number := float(text), factors[0]) == value:
+        text = f"{value / size:.{digits}g}"
+        if _as_plain(number := float(text), factors[0], factors[2]) == value:
             plain = not number or 1e-4 <= abs(number) < 1e6
             text = repr(number).removesuffix(".0") if plain else re.sub(r"e\+?(-?)0*", r"e\1", text)
             return f"{text} {match['unit']}"
@@ -355,6 +372,7 @@ Newtons = Annotated[float, _in("load")]
 PositiveLoad = Annotated[Newtons, _POSITIVE]
 NotNegativeLoad = Annotated[Newtons, _NOT_NEGATIVE]
 Torque = Annotated[float, _in("torque")]
+Power = Annotated[float, _in("power")]
 SignedAngle = Annotated[float, _in("angle")]
 Speed = Annotated[float, _in("speed"), _NOT_NEGATIVE]
 TemperatureRise = Annotated[float, _in("temperature")]
@@ -383,6 +401,8 @@ Share = Annotated[float, _in("dimensionless"), _between(0, 1, "0 and 1")]
 TimeShare = Annotated[
     float, _in("dimensionless"), _POSITIVE, Range("a share is 1, or 100 %, at most", most=1)
 ]
+#: h
+Hours = Annotated[float, _in("time"), _POSITIVE]
 Frequency = Annotated[float, _in("frequency"), _POSITIVE]
 Mass = Annotated[float, _in("mass"), _POSITIVE]
 Factor = Annotated[float, _in("dimensionless"), _POSITIVE]

@@ -46,6 +46,8 @@ UNITS = {
     "speed": _any("rpm", *(word.replace("^", r"\^") for word in TURNS), f"{_ANGLE}/{_TIME}"),
     "viscosity": _any(f"{_AREA}/{_TIME}", "c?St"),
     "temperature": "m?K",
+    "time": _any("h", "hours?", "min", "s"),
+    "power": _any("[kM]?W", "hp"),
     "dimensionless": "%",
 }
 _EXPONENT = "(?:[eE][+-]?[0-9]+)?"

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Any, ClassVar
+from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
@@ -21,16 +21,19 @@ from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
 from solidgear.strength.load import AT_REST, LoadsAlone, loads_alone
-from solidgear.strength.stress.cases import CaseStress, case_stress, least_rated
+from solidgear.strength.stress.cases import CaseStress, case_stress, rated_under
 from solidgear.strength.stress.conditions import Conditions
+from solidgear.strength.stress.drawn import LITTLE, DrawnStress
 from solidgear.strength.stress.duty import DutyForces, cycles_of
 from solidgear.strength.stress.norm.steels import strength_of
 from solidgear.strength.stress.notch import ENOUGH
+from solidgear.strength.stress.rating import Kind, Rating
 from solidgear.strength.stress.section_forces import COMPONENTS, SectionForces, forces_of
 from solidgear.strength.stress.shaft import (
+    Notch,
     ShaftStress,
     check_tolerance,
-    local_stress,
+    local_under,
     shaft_stress,
 )
 from solidgear.strength.stress.solid_notches import FINEST_LOCAL, SolidNotch, solid_notches
@@ -85,6 +88,35 @@ class StressedShaft:
         names = {drawn.segment for drawn in self.found.drawn}
         segments += [segment for segment in self.scene.segments if segment.name in names]
         return tuple(dict.fromkeys(s.name for s in segments if strength_of(s) is None))
+
+
+class LeastSafety(NamedTuple):
+    """The least safety of one kind."""
+
+    value: float
+    shaft: StressedShaft
+    notch: Notch | DrawnStress
+
+
+def least_safety(shafts: Sequence[StressedShaft], kind: Kind) -> LeastSafety | None:
+    """Return the least safety of a kind over all notches of some shafts; None where none has one."""
+    rated = [
+        LeastSafety(notch.rating.safeties[kind], shaft, notch)
+        for shaft in shafts
+        for notch in shaft.found.worst
+        if notch.rating is not None and kind in notch.rating.safeties
+    ]
+    return min(rated, key=lambda least: least.value, default=None)
+
+
+def lesser_elsewhere(
+    shafts: Sequence[StressedShaft], worst: Rating
+) -> Iterator[tuple[Kind, LeastSafety]]:
+    """Yield the kinds of which another notch has less than that of the least against fatigue has."""
+    for kind, value in worst.safeties.items():
+        least = least_safety(shafts, kind)
+        if least is not None and least.value < (1 - LITTLE) * value:
+            yield kind, least
 
 
 @dataclass(frozen=True)
@@ -332,11 +364,11 @@ def _open_safety(
     scene: Scene, stress: ShaftStress, variants: Sequence[SectionForces], conditions: Conditions
 ) -> tuple[float, float] | None:
     """Return the range of the least safety over the section forces solved and the variants."""
-    usual = [notch.rating.worst for notch in stress.worst if notch.rating is not None]
-    if not variants or not usual:
+    usual = min((rating.worst for rating in stress.ratings), default=None)
+    if not variants or usual is None:
         return None
-    others = [least_rated(scene, stress, forces, conditions) for forces in variants]
-    safeties = [usual[0], *(notch.rating.worst for notch in others if notch is not None)]
+    others = (rated_under(scene, stress, forces, conditions) for forces in variants)
+    safeties = [usual, *(min(notch.rating.worst for notch in rated) for rated in others)]
     return min(safeties), max(safeties)
 
 
@@ -352,7 +384,7 @@ def _ranges(
     amplitudes = {
         notch.name: [
             notch.local.amplitude,
-            *(local_stress(notch.found, forces.at(notch.y)).amplitude for forces in variants),
+            *(local_under(notch, forces).amplitude for forces in variants),
         ]
         for notch in stress.notches
     }

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+from contextlib import suppress
 from dataclasses import dataclass, fields
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, TypeAlias
 
 import typer
 
@@ -15,6 +16,11 @@ from solidgear.show.sheet import present
 from solidgear.strength.acting import Acting, AtRestFile
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.study import stress as stressed
+
+if TYPE_CHECKING:
+    Hours: TypeAlias = str | float | None
+else:
+    Hours = str | None
 
 
 @dataclass(frozen=True)
@@ -93,8 +99,10 @@ class Rated(Group):
         ),
     ] = None
     hours: Annotated[
-        float | None,
-        typer.Option(help="Life in hours, of a duty table with shares of the time."),
+        Hours,
+        typer.Option(
+            help='Life of a duty table with shares of the time, such as 20000 (hours) or "2 years".'
+        ),
     ] = None
     damage_sum: Annotated[
         float | None, typer.Option(help="Sum of damage that a spectrum bears; else 0.3.")
@@ -103,6 +111,8 @@ class Rated(Group):
     def conditions(self) -> Conditions:
         """Return the options read as conditions of a rating; refuse one that cannot be read."""
         values = {f.name: getattr(self, f.name) for f in fields(self)}
+        with suppress(TypeError, ValueError):  # a text with a unit stays one
+            values["hours"] = float(values["hours"])
         try:
             return Conditions(**{name: v for name, v in values.items() if v is not None})
         except SceneError as error:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.core import Model, PositiveLength, SceneError, show
-from solidgear.core.scene.units import Stress
+from solidgear.core.scene.units import Hours, Stress
 from solidgear.strength.stress.norm.life import FEWEST
 
 if TYPE_CHECKING:
@@ -78,7 +78,7 @@ class Conditions(Model):
     #: factors of the load, each with its cycles, in place of `cycles`
     spectrum: Levels | None = None
     #: life in hours, of a duty table with shares of the time
-    hours: Annotated[float, Field(gt=0)] | None = None
+    hours: Hours | None = None
     #: sum of damage that a spectrum bears
     damage_sum: Annotated[float, Field(gt=0, le=2)] | None = None
 

@@ -1,4 +1,4 @@
-"""Notches with factors of the norm alone: from tests, by form factors, and two at one place."""
+"""Notches with factors of the norm alone: from tests, by form factors, and several at one place."""
 
 from __future__ import annotations
 
@@ -15,6 +15,8 @@ from solidgear.strength.stress.norm.tested import at_diameter, size_of_notch
 from solidgear.strength.stress.rated_notch import ByLoad, NotchFactors, RatedNotch, Steel
 from solidgear.strength.stress.rating_lines import BY_GRADIENT, BY_GRADIENT_HARD, Line
 
+#: source of the factor of notches that meet
+TOGETHER = "assumed: FKM guideline, of notches that meet: 1 + sum of (beta - 1)"
 Tested = Callable[[Steel], dict[Load, float]]
 
 
@@ -122,29 +124,28 @@ class NotchByForm(NormNotch):
 
 
 @dataclass(frozen=True)
-class TwoNotches:
-    """Two notches at one place: the excess of both factors over one adds (FKM guideline, 6th ed.
-    2012, of notches that meet).
+class MeetingNotches:
+    """A notch that others meet: the excess of every factor over one adds (FKM guideline, 6th ed.
+    2012, of notches that meet), on the section of the first.
     """
 
     first: RatedNotch
-    second: RatedNotch
-    section: Section
+    others: tuple[RatedNotch, ...]
 
     @property
     def diameter(self) -> float:
         """Diameter of nominal stress and of K_2, m."""
-        return self.section.outer
+        return self.first.diameter
 
     @property
     def hollow(self) -> bool:
         """Whether the section has a bore."""
-        return self.section.inner > 0
+        return self.first.hollow
 
     @property
     def revolved(self) -> bool:
-        """Whether both run around the shaft."""
-        return self.first.revolved and self.second.revolved
+        """Whether all run around the shaft."""
+        return all(notch.revolved for notch in (self.first, *self.others))
 
     @property
     def tested_roughness(self) -> float | None:
@@ -153,8 +154,8 @@ class TwoNotches:
 
     def factors(self, steel: Steel) -> NotchFactors:
         """Return the notch factors in a steel."""
-        first, second = self.first.factors(steel), self.second.factors(steel)
-        beta = {load: first.notch[load] + second.notch[load] - 1 for load in LOADS}
-        source = "assumed: FKM guideline, of two notches that meet: beta_1 + beta_2 - 1"
-        lines = (*first.lines, *second.lines, Line("beta", beta, source))
-        return NotchFactors(beta, rise=beta, peak=None, lines=lines)
+        each = [notch.factors(steel) for notch in (self.first, *self.others)]
+        beta = {load: 1 + sum(part.notch[load] - 1 for part in each) for load in LOADS}
+        lines = (line for part in each for line in part.lines)
+        # the others alone may raise the yield point by less
+        return NotchFactors(beta, each[0].rise, None, (*lines, Line("beta", beta, TOGETHER)))

@@ -3,23 +3,29 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from functools import partial
 
 from solidgear.core import listed
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, plain
-from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft
-from solidgear.strength.stress.cases import CaseStress, Rated
+from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft, lesser_elsewhere
+from solidgear.strength.stress.cases import CaseStress
 from solidgear.strength.stress.din743 import LOADS
 from solidgear.strength.stress.drawn import DrawnStress
-from solidgear.strength.stress.rating import Rating
+from solidgear.strength.stress.rating import Kind, Rating
 from solidgear.strength.stress.rating_lines import ASSUMED, Entry
 from solidgear.strength.stress.shaft import Notch, ShaftStress
 
 #: SI unit of a stress in tables
 STRESS = "Pa stressed"
+#: what a safety is against
+KIND_WORDS: dict[Kind, str] = {
+    "fatigue": "against fatigue",
+    "yielding": "against yielding",
+    "crack": "against a first crack",
+}
 #: safety that DIN 743 asks for where loads and strength are sure
 LEAST = 1.2
 #: share of a value that is left open from which on it is told
@@ -101,9 +107,10 @@ def safeties(stress: ShaftStress) -> Table:
 
 
 def over_cases(cases: Sequence[CaseStress], units: Units = ENGINEERING) -> list[Table]:
-    """Return the largest moment and the worst notch of every case of the loads; none of one case."""
+    """Return the largest moment and the worst notches of every case of the loads; none of one case."""
     if not cases:
         return []
+    elsewhere = any(case.yielding_notch != case.notch for case in cases)
     rated, filleted = any(case.worst for case in cases), any(case.fillet for case in cases)
     columns = [
         word("in"),
@@ -118,6 +125,7 @@ def over_cases(cases: Sequence[CaseStress], units: Units = ENGINEERING) -> list[
         Column("S, fatigue", hidden=not rated),
         Column("S, yielding", hidden=not rated),
         replace(text("worst notch"), hidden=not rated),
+        replace(text("in yielding"), hidden=not elsewhere),
     ]
     rows = [
         [
@@ -125,7 +133,10 @@ def over_cases(cases: Sequence[CaseStress], units: Units = ENGINEERING) -> list[
             case.largest_moment,
             case.amplitude,
             case.fillet,
-            *_worst_cells(case.worst),
+            None if case.fatigue is None else safety(case.fatigue),
+            None if case.yielding is None else safety(case.yielding),
+            case.notch or None,
+            case.yielding_notch or None,
         ]
         for case in cases
     ]
@@ -133,15 +144,8 @@ def over_cases(cases: Sequence[CaseStress], units: Units = ENGINEERING) -> list[
     if filleted:
         note += " On a fillet: the largest amplitude by bending on a surface."
     if rated:
-        note += " Safety of the notch where the least of both is smallest."
+        note += " Each safety is the least of all notches."
     return [Table("Every case of the loads", columns, rows, note)]
-
-
-def _worst_cells(worst: Rated | None) -> list[str | None]:
-    if worst is None:
-        return [None, None, None]
-    fatigue, yielding = safety(worst.rating.fatigue), safety(worst.rating.yielding)
-    return [fatigue, yielding, worst.name]
 
 
 def kind_of(notch: Notch | DrawnStress) -> str:
@@ -198,25 +202,37 @@ def headline(stressed: StressAtRest, units: Units = ENGINEERING) -> str:
     """
     worst = [(shaft, shaft.found.worst[0]) for shaft in stressed.shafts if shaft.found.worst]
     if not worst:
-        return " ".join(_unrated_words(stressed.shafts))
+        return " ".join(_unrated_words(stressed.shafts, units))
     shaft, notch = min(worst, key=lambda pair: _rank(pair[1]))
-    name = notch.name if isinstance(notch, Notch) else f'{notch.kind} "{notch.name}"'
-    place = f"{shaft.name}, {name}" if len(stressed.shafts) > 1 else name
     count = sum(len(each.found.worst) for each in stressed.shafts)
     lead = f"Worst of {count} notches" if count > 1 else "Worst"
-    sentence = f"{lead} at {place}: {_stress_words(notch, units)}"
+    several = len(stressed.shafts) > 1
+    sentence = f"{lead} at {_place(shaft, notch, several)}: {_stress_words(notch, units)}"
     if notch.rating is not None:
         sentence += f", {_safety_words(notch.rating)}"
+        sentence += "".join(_less_elsewhere(stressed, notch.rating))
     if shaft.open_safety is not None and shaft.open_safety[1] > (1 + LITTLE) * shaft.open_safety[0]:
         low, high = map(safety, shaft.open_safety)
         sentence += f"; the least safety is {low} to {high} by {stressed.open_by} of the bearings"
-    return " ".join([f"{sentence}.", *_unrated_words(stressed.shafts)])
+    return " ".join([f"{sentence}.", *_unrated_words(stressed.shafts, units)])
 
 
-def _rank(notch: Notch | DrawnStress) -> tuple[float, bool, float]:
+def _rank(notch: Notch | DrawnStress) -> tuple[float, float, bool, float]:
     """Return the rank of a notch; without ratings fillets, with their stress, come first."""
-    safety_value, stress = notch.severity
-    return safety_value, isinstance(notch, DrawnStress), stress
+    fatigue, least, stress = notch.severity
+    return fatigue, least, isinstance(notch, DrawnStress), stress
+
+
+def _place(shaft: StressedShaft, notch: Notch | DrawnStress, several: bool) -> str:
+    name = notch.name if isinstance(notch, Notch) else f'{notch.kind} "{notch.name}"'
+    return f"{shaft.name}, {name}" if several else name
+
+
+def _less_elsewhere(stressed: StressAtRest, worst: Rating) -> Iterator[str]:
+    """Yield the least safeties that other notches have than that of the least against fatigue."""
+    for kind, least in lesser_elsewhere(stressed.shafts, worst):
+        place = _place(least.shaft, least.notch, len(stressed.shafts) > 1)
+        yield f"; least {KIND_WORDS[kind]} {safety(least.value)} at {place}"
 
 
 def _stress_words(notch: Notch | DrawnStress, units: Units) -> str:
@@ -241,12 +257,21 @@ def _safety_words(rating_: Rating) -> str:
     return words
 
 
-def _unrated_words(shafts: tuple[StressedShaft, ...]) -> list[str]:
+def _unrated_words(shafts: tuple[StressedShaft, ...], units: Units) -> list[str]:
     """Return a sentence on notches without a rating."""
-    names = [f'{u.kind} "{u.name}"' for shaft in shafts for u in shaft.found.unrated]
-    corners = sum(len(shaft.found.sharp) for shaft in shafts)
-    if corners:
-        names.append(f"{corners} sharp corner{'s' if corners > 1 else ''}")
-    if not names:
-        return []
-    return [f"Not rated: {listed(names, most=4)}."]
+    names = [
+        f"{shaft.name}, {name}" if len(shafts) > 1 else name
+        for shaft in shafts
+        for name in not_rated(shaft.found, units)
+    ]
+    return [f"Not rated: {listed(names, most=4)}."] if names else []
+
+
+def not_rated(stress: ShaftStress, units: Units = ENGINEERING) -> Iterator[str]:
+    """Yield the sharp corners of a shaft, whose safety may be less than any that is shown, and the
+    features without a rating.
+    """
+    for corner in stress.sharp:
+        yield f"sharp corner at y = {units.text(corner.y, 'm')}"
+    for feature in stress.unrated:
+        yield f'{feature.kind} "{feature.name}"'

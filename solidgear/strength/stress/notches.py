@@ -17,7 +17,6 @@ from solidgear.strength.stress.norm_notch import (
     NotchByForm,
     NotchByTests,
     Section,
-    TwoNotches,
 )
 from solidgear.strength.stress.rated_notch import Steel
 
@@ -33,8 +32,9 @@ NotchOrReason: TypeAlias = "DrawnNotch | str"
 class DrawnNotch:
     """A notch by the norm, and what a reader must know about it."""
 
-    notch: NotchByTests | NotchByForm | TwoNotches
+    notch: NotchByTests | NotchByForm
     remarks: tuple[str, ...] = ()
+    counted: tuple[str, ...] = ()  #: names of other features that its factors hold
 
 
 @dataclass(frozen=True)
@@ -59,14 +59,14 @@ class Place:
         """Return the section at the floor of a groove of a depth, m."""
         return Section(2 * (self.segment.outer0 - depth), 2 * self.segment.inner0)
 
-    def beside(self, *kinds: str) -> list[Place]:
-        """Return the other features of some kinds that this one overlaps."""
+    def beside(self, kind: str) -> list[Place]:
+        """Return the other features of a kind that this one overlaps."""
         lo, hi = self.span
         others = [
             Place(other, self.segment, self.scene)
             for other in self.scene.features
             if other is not self.feature
-            and other.kind in kinds
+            and other.kind == kind
             and other.segment == self.feature.segment
         ]
         return [o for o in others if o.span[0] < hi - TOUCH and o.span[1] > lo + TOUCH]
@@ -93,7 +93,6 @@ def _keyway(place: Place) -> NotchOrReason:
     others = place.beside("keyway")
     count = 1 + len(others)
     words = "one keyway" if count == 1 else "two keyways, 1.15 times one"
-    remarks = [*_keyway_remarks(place, count)]
     notch = NotchByTests(
         place.section,
         f"DIN 743-2, table 1: {words}",
@@ -102,14 +101,8 @@ def _keyway(place: Place) -> NotchOrReason:
         tested_roughness=0.0,
         revolved=False,
     )
-    fits = place.beside("press_fit")
-    if not fits:
-        return DrawnNotch(notch, tuple(remarks))
-    hub = _hub(fits[0])
-    remarks.append(
-        f'it meets the press fit "{fits[0].feature.name}": the norm has no factor for both'
-    )
-    return DrawnNotch(TwoNotches(notch, hub, place.section), tuple(remarks))
+    counted = tuple(other.feature.name for other in others)
+    return DrawnNotch(notch, tuple(_keyway_remarks(place, count)), counted)
 
 
 def _keyway_remarks(place: Place, count: int) -> Iterator[str]:
@@ -117,17 +110,6 @@ def _keyway_remarks(place: Place, count: int) -> Iterator[str]:
         yield f"{count} keyways side by side, and the norm goes to two"
     if place.feature.mill is not None:
         yield "rated as one by end mill; by disc mill it is milder"
-
-
-def _hub(place: Place) -> NotchByTests:
-    return NotchByTests(
-        place.section,
-        "DIN 743-2, table 1: press fit",
-        tested=lambda steel: tested.press_fit(steel.ultimate),
-        tested_diameter=tested.KEYED,
-        tested_roughness=0.0,
-        revolved=True,
-    )
 
 
 def _press_fit(place: Place) -> NotchOrReason:
@@ -138,7 +120,15 @@ def _press_fit(place: Place) -> NotchOrReason:
         pressure += "; whether the hub bears that is not judged without hub_yield_point"
     else:
         pressure += f", and its hub yields at {limit / 1e6:.4g} MPa"
-    return DrawnNotch(_hub(place), (pressure,))
+    notch = NotchByTests(
+        place.section,
+        "DIN 743-2, table 1: press fit",
+        tested=lambda steel: tested.press_fit(steel.ultimate),
+        tested_diameter=tested.KEYED,
+        tested_roughness=0.0,
+        revolved=True,
+    )
+    return DrawnNotch(notch, (pressure,))
 
 
 def _spline(place: Place) -> NotchOrReason:

@@ -10,8 +10,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, NamedTuple
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Literal, NamedTuple
 
 from solidgear.strength.stress import din743
 from solidgear.strength.stress.din743 import LOADS, Load
@@ -29,6 +29,10 @@ if TYPE_CHECKING:
     from solidgear.core.scene.parts import Strength
     from solidgear.strength.stress.conditions import Conditions, LoadLevel
     from solidgear.strength.stress.nominal import NominalStress
+
+
+Kind = Literal["fatigue", "yielding", "crack"]
+KINDS: tuple[Kind, ...] = ("fatigue", "yielding", "crack")
 
 
 @dataclass(frozen=True)
@@ -52,8 +56,36 @@ class Rating:
     @property
     def worst(self) -> float:
         """Least of all safeties."""
-        known = (self.fatigue, self.yielding, self.crack)
-        return min(value for value in known if value is not None)
+        return min(self.safeties.values())
+
+    @property
+    def safeties(self) -> dict[Kind, float]:
+        """Safeties that are known, by kind."""
+        known = zip(KINDS, (self.fatigue, self.yielding, self.crack))
+        return {kind: value for kind, value in known if value is not None}
+
+    def with_least_of(self, ratings: Sequence[Rating]) -> Rating:
+        """Return this rating with the least safety of every kind among several of the same notch."""
+        least = [each.least for each in ratings if each.least is not None]
+        cracks = [each.crack for each in ratings if each.crack is not None]
+        elementary = [each.elementary for each in ratings if each.elementary is not None]
+        return replace(
+            self,
+            fatigue=min(each.fatigue for each in ratings),
+            yielding=min(each.yielding for each in ratings),
+            crack=min(cracks, default=None),
+            least=(min(a for a, _ in least), min(b for _, b in least)) if least else None,
+            elementary=min(elementary, default=None),
+        )
+
+
+def severity(rating: Rating | None, stress: float) -> tuple[float, float, float]:
+    """Return the rank of a notch, the worst least: the safety against fatigue, then the least of all,
+    then minus its stress, Pa; without a rating the stress alone.
+    """
+    if rating is None:
+        return math.inf, math.inf, -stress
+    return rating.fatigue, rating.worst, -stress
 
 
 def rated(

@@ -21,8 +21,12 @@ and between loads forces stay while ``dM_x/dy = -Q_z`` and ``dM_z/dy = Q_x``. Th
 
 A load that is spread over a seat is taken as one at the middle of the loaded part: at the place of
 the port, or at the end of the seat nearest to that where the port lies beside the seat. Outside
-of the seats, where all fillets lie, section forces are exact however the load is spread; inside a
-seat the moment given here is that of the concentrated load, a little above that of a spread one.
+of the seats section forces are exact however the load is spread; inside a seat the moment given
+here is that of the concentrated load, a little above that of a spread one.
+
+How a load is spread over its seat is not known: a key may take all of a torque on its own length.
+In a section inside a seat, a share from none to all of the load has entered, so that force, torque
+and couple lie between those of both sides of it. :func:`sections_along` gives both.
 
 Weight is spread along the shaft as its mass is. Between two places a and y it adds its own part,
 
@@ -34,9 +38,10 @@ so that moments are curved there, and may be largest where the shear force is ze
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from itertools import chain, combinations
+from typing import TYPE_CHECKING, NamedTuple
 
 import numpy as np
 
@@ -68,6 +73,17 @@ class Load:
     name: str
     y: float  #: m
     six: np.ndarray  #: (6,) forces and moments about the axis at y, N and N m
+    #: ends of the surface over which it enters, m; None of a load at a point
+    seat: tuple[float, float] | None = None
+
+    def enters_at(self, y: float, beyond: bool) -> bool:
+        """Return whether the section just before a place, or just beyond it, lies where it enters."""
+        lo, hi = self.seat or (self.y, self.y)
+        return abs(y - self.y) <= TOUCH if hi - lo <= TOUCH else lies_in((lo, hi), y, beyond)
+
+    def has_entered(self, y: float, beyond: bool) -> bool:
+        """Return whether its place lies before the section just before a place, or just beyond it."""
+        return beyond if abs(y - self.y) <= TOUCH else self.y < y
 
 
 @dataclass(frozen=True)
@@ -87,6 +103,9 @@ class SectionForces:
     left: np.ndarray
     right: np.ndarray
     spread: SpreadWeight | None = None
+    loads: tuple[Load, ...] = field(repr=False, default=())
+    #: (6,) what is less is rounding
+    rounding: np.ndarray | float = field(repr=False, default=0.0)
 
     def at(self, y: float) -> np.ndarray:
         """Return the section forces (6,) at one place, m; where a load acts, just beyond it."""
@@ -128,6 +147,68 @@ class SectionForces:
             y += [self.y[k], *between, end]
             rows += [self.right[k], *map(self.at, between), self.left[k + 1]]
         return np.array([*y, self.y[-1]]), np.array([*rows, self.right[-1]])
+
+
+def lies_in(span: tuple[float, float], y: float, beyond: bool) -> bool:
+    """Return whether the section just before a place, m, or just beyond it, lies in a span."""
+    lo, hi = span
+    return lo - TOUCH <= y < hi - TOUCH if beyond else lo + TOUCH < y <= hi + TOUCH
+
+
+class Cut(NamedTuple):
+    """A section across the shaft, just before a place, m, or just beyond it."""
+
+    y: float
+    beyond: bool
+    #: loads on whose seats it lies that enter on the other side of it than their places are
+    across: tuple[str, ...] = ()
+
+    def of(self, forces: SectionForces) -> np.ndarray:
+        """Return the section forces (6,) there."""
+        six = forces.at(self.y) if self.beyond else forces.before(self.y)
+        moved = [load for load in forces.loads if load.name in self.across]
+        if not moved:
+            return six
+        for load in moved:
+            # the moment of its force stays that of the force at its place
+            six = six + load.six if load.has_entered(self.y, self.beyond) else six - load.six
+        return np.where(np.abs(six) > forces.rounding, six, 0.0)
+
+
+def sections_along(
+    span: tuple[float, float], forces: Sequence[SectionForces], ends: Iterable[float] = ()
+) -> Iterator[Cut]:
+    """Yield sections along a span, m, among which section forces are largest: at its ends, at places
+    and ends of seats of loads, where moments are stationary, and at `ends` of what else lies there;
+    on a seat with the load on one side and on the other.
+
+    Examples
+    --------
+    A key from 10 to 30 mm under a hub from 20 to 60 mm, whose torque may all enter by the key:
+
+    >>> load = Load("hub", 0.04, np.array([0, 0, 0, 0, 100.0, 0]), seat=(0.02, 0.06))
+    >>> forces = section_forces([load, Load("end", 0.1, -load.six)], 0.1)
+    >>> [float(cut.of(forces)[4]) for cut in sections_along((0.01, 0.03), [forces])]
+    [0.0, 0.0, 0.0, -100.0, 0.0, -100.0]
+    """
+    lo, hi = span
+    loads = {load.name: load for each in forces for load in each.loads if np.any(load.six)}
+    seats = [end for load in loads.values() for end in load.seat or ()]
+    inside = [y for y in chain(ends, seats, *(each.y for each in forces)) if lo < y < hi]
+    places = [y for y in _places(inside, hi) if lo + TOUCH < y < hi - TOUCH]
+    sides = [(lo, True), *((y, beyond) for y in places for beyond in (False, True)), (hi, False)]
+    for y, beyond in sides:
+        entering = [load.name for load in loads.values() if load.enters_at(y, beyond)]
+        yield from both_sides(float(y), beyond, entering)
+
+
+def both_sides(y: float, beyond: bool, entering: Sequence[str]) -> Iterator[Cut]:
+    """Yield the section just before a place, m, or just beyond it, with loads of some names on one
+    side of it and on the other.
+    """
+    for count in range(len(entering) + 1):
+        for across in combinations(entering, count):
+            yield Cut(y, beyond, across)
 
 
 def _bending(forces: np.ndarray) -> np.ndarray:
@@ -180,7 +261,7 @@ def _along(
         after.append(forces)
         names.append(", ".join(load.name for load in acting))
     left, right = (np.where(np.abs(side) > least, side, 0.0) for side in (before, after))
-    return SectionForces(np.array(places), tuple(names), left, right, spread)
+    return SectionForces(np.array(places), tuple(names), left, right, spread, tuple(loads), least)
 
 
 def _stationary(forces: SectionForces) -> Iterator[float]:
@@ -236,17 +317,18 @@ def on_ports(scene: Scene, loads: Mapping[str, ArrayLike]) -> list[Load]:
             )
         station = stations[name]
         y = min(max(station.y, station.lo), station.hi)
-        placed.append(Load(name, y, move_load(six, station.y, y)))
+        placed.append(Load(name, y, move_load(six, station.y, y), (station.lo, station.hi)))
     return placed
 
 
 def _masses(scene: Scene, gravity: np.ndarray) -> Iterator[Load]:
     """Yield the weights of the masses on a shaft."""
-    seats = {station.name: station.y for station in scene.stations}
+    stations = {station.name: station for station in scene.stations}
     for point in scene.masses:
         force = np.concatenate([point.mass * gravity, np.zeros(3)])
         centre = shift(point.offset).T @ force
-        yield Load(f"{WEIGHT}{point.name}", seats[point.station], centre)
+        station = stations[point.station]
+        yield Load(f"{WEIGHT}{point.name}", station.y, centre, (station.lo, station.hi))
 
 
 def _refuse_imbalance(loads: Sequence[Load], length: float) -> np.ndarray:

@@ -31,8 +31,8 @@ from solidgear.strength.stress.nominal import (
 from solidgear.strength.stress.norm.steels import source_of, strength_of
 from solidgear.strength.stress.notch import ENOUGH, FilletFactors, NotchFactors, fillet_factors
 from solidgear.strength.stress.published import PUBLISHED
-from solidgear.strength.stress.rating import Rating, rated
-from solidgear.strength.stress.section_forces import SectionForces, forces_of
+from solidgear.strength.stress.rating import Rating, rated, severity
+from solidgear.strength.stress.section_forces import SectionForces, both_sides, forces_of
 
 if TYPE_CHECKING:
     from numpy.typing import ArrayLike
@@ -66,6 +66,11 @@ class Local:
     shear_bar: float
     angle: float  #: of that place on the arc, from the cylinder, rad
 
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Normal stress, then shear stress, Pa: the largest is the worst."""
+        return self.amplitude + abs(self.mean), abs(self.shear)
+
 
 @dataclass(frozen=True)
 class Notch:
@@ -90,10 +95,9 @@ class Notch:
     remark: str  #: on disturbances of its stress; empty for none
 
     @property
-    def severity(self) -> tuple[float, float]:
-        """Rank of a fillet, the worst least: the safety, or minus the stress where there is none."""
-        safety = self.rating.worst if self.rating else np.inf
-        return safety, -(self.local.amplitude + abs(self.local.mean))
+    def severity(self) -> tuple[float, float, float]:
+        """Rank of a fillet, the worst least."""
+        return severity(self.rating, self.local.rank[0])
 
 
 class SharpCorner(NamedTuple):
@@ -122,11 +126,16 @@ class ShaftStress:
 
     @property
     def worst(self) -> tuple[Notch | DrawnStress, ...]:
-        """Fillets and features, that with the least safety first; without strength, the fillet with
-        the largest stress.
+        """Fillets and features, that with the least safety against fatigue first; without strength, the
+        fillet with the largest stress.
         """
         notches: list[Notch | DrawnStress] = [*self.notches, *self.drawn]
         return tuple(sorted(notches, key=lambda notch: notch.severity))
+
+    @property
+    def ratings(self) -> tuple[Rating, ...]:
+        """Ratings of all notches that have one, in the same order."""
+        return tuple(notch.rating for notch in self.worst if notch.rating is not None)
 
 
 def shaft_stress(
@@ -243,7 +252,7 @@ def _notch(
     duty: Sequence[DutyForces],
 ) -> Notch:
     fillet = fillet_factors(scene, corner.name, tolerance)
-    section_load = forces.at(fillet.reference)
+    section_load = worst_load(fillet, forces)
     nominal = nominal_stress(fillet.section, section_load, fillet.radius)
     local, (small, large) = local_stress(fillet, section_load), _diameters(scene, corner)
     segment = scene.segments[corner.owner]
@@ -318,6 +327,22 @@ def _diameters(scene: Scene, corner: Corner) -> tuple[float, float]:
     neighbour = scene.segments[corner.owner - corner.side]
     start, end = radii_of(neighbour, corner.surface)
     return 2 * corner.r, 2 * (end if corner.side > 0 else start)
+
+
+def worst_load(fillet: FilletFactors, forces: SectionForces) -> np.ndarray:
+    """Return the section forces (6,) at a fillet: where a seat crosses its step, as it may over a
+    step of the bore, those on the side of the load that stress it most. A seat that ends at the step
+    is on one side of it.
+    """
+    step, seats = fillet.corner.y, {load.name: load.seat for load in forces.loads if load.seat}
+    crossing = [name for name, (lo, hi) in seats.items() if lo + TOUCH < step < hi - TOUCH]
+    sections = [cut.of(forces) for cut in both_sides(fillet.reference, True, crossing)]
+    return max(sections, key=lambda six: local_stress(fillet, six).rank)
+
+
+def local_under(notch: Notch, forces: SectionForces) -> Local:
+    """Return the stress on a fillet under other section forces."""
+    return local_stress(notch.found, worst_load(notch.found, forces))
 
 
 def local_stress(fillet: NotchFactors, forces: np.ndarray) -> Local:

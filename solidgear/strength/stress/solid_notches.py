@@ -17,6 +17,7 @@ from solidgear.strength.stress.groove import GrooveFactors, groove_factors
 from solidgear.strength.stress.groove_mesh import GrooveShape
 from solidgear.strength.stress.local_factors import LocalFactors, local_factors
 from solidgear.strength.stress.nominal import NominalStress, nominal_stress
+from solidgear.strength.stress.section_forces import sections_along
 from solidgear.strength.stress.shaft import ShaftStress
 from solidgear.strength.stress.shaft import local_stress as stress_on_arc
 
@@ -45,6 +46,11 @@ class LocalStress:
     #: shear, shear_bar: largest shear stress by torque, at the same place
     shear: float
     shear_bar: float
+
+    @property
+    def rank(self) -> tuple[float, float]:
+        """Normal stress, then shear stress, Pa: the largest is the worst."""
+        return self.amplitude + abs(self.mean), abs(self.shear)
 
 
 @dataclass(frozen=True)
@@ -95,8 +101,17 @@ def solid_notches(
         except SolidgearError as error:  # the others have their stress all the same
             remarks.append(f"no local stress: {error}")
             continue
-        middle = concentration.reference, stress.forces.at(concentration.reference)
-        y, section_load = rated.get(feature.name, middle)
+        middle = concentration.reference
+        y, section_load = rated.get(feature.name) or (
+            middle,
+            max(
+                (
+                    cut.of(stress.forces)
+                    for cut in sections_along((middle, middle), [stress.forces])
+                ),
+                key=lambda six: local_stress(concentration, six).rank,
+            ),
+        )
         notches.append(
             SolidNotch(
                 name=feature.name,

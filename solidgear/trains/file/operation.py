@@ -13,7 +13,7 @@ from solidgear.core.scene.gravity import Direction, acceleration
 from solidgear.core.scene.load import BearingLoad
 from solidgear.core.scene.load_case import LoadCase
 from solidgear.core.scene.model_table import table_of
-from solidgear.core.scene.units import Speed, TimeShare, Torque
+from solidgear.core.scene.units import Hours, Speed, TimeShare, Torque
 
 #: operating points of one train
 MOST_POINTS = 1000
@@ -59,7 +59,7 @@ class OperatingPoint(Model):
     #: share of the time of a duty table; of every point or of none
     share: TimeShare | None = None
     #: hours of a duty table; of every point or of none
-    hours: Annotated[float, Field(gt=0)] | None = None
+    hours: Hours | None = None
 
     @model_validator(mode="after")
     def _one_measure(self) -> OperatingPoint:

@@ -53,6 +53,8 @@ SHAFT = "timoshenko"
 SAME_LOAD = 0.05
 #: trains at rest that are kept: one on each flank, or the last two whose teeth differ
 FLANKS = 2
+#: stiffness of a bearing across its load, over that along it, that is rounding
+BARE = 1e-12
 LOOP = (
     "meshes of a loop divide the torque by their stiffness; errors of teeth and positions, which "
     "shift it, are left out"
@@ -196,6 +198,12 @@ class Operating:
             f"{place}bearing {end} carries no load within its clearance, so it has no stiffness"
             for end in solved.lost
         ]
+        notes += [
+            f"{place}bearing {end} carries on one element, and nothing holds it across its load: "
+            "motions there have no error bar"
+            for end in self.bearings
+            if end in solved.tangent and on_one_element(solved.tangent[end])
+        ]
         return OperatingState(
             point=point,
             models=assembly.models_by_shaft(self.models),
@@ -237,6 +245,12 @@ class Operating:
                 end = f"{side}.{station}"
                 loads[end] = loads.get(end, np.zeros(6)) + six
         return loads, notes
+
+
+def on_one_element(tangent: np.ndarray) -> bool:
+    """Return whether a bearing (6, 6) has stiffness along one direction across the shaft alone."""
+    least, largest = np.linalg.eigvalsh(tangent[np.ix_((0, 2), (0, 2))])
+    return bool(abs(least) <= BARE * largest and largest > 0)
 
 
 def refuse_own_loads(train: Train, side: str) -> None:

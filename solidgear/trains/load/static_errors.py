@@ -31,7 +31,7 @@ from solidgear.trains.load.state import OperatingState, with_settled_bearings
 
 #: components of motion that the meshes of gears feel: of places, and of axes
 PLACES, TILTS = (0, 1, 2), (3, 5)
-#: growth of a number as the train turns, relative, below which it is rounding
+#: growth of a number in a motion that nothing resists, relative, below which it is rounding
 ROUNDING = 1e-9
 #: motion of a gear over the other one, with the length of the shaft as arm, that symmetry forbids
 FORBIDDEN = 1e-6
@@ -89,6 +89,8 @@ class StaticErrors:
                 least = FORBIDDEN * max(arms[part] * size for part, size in sizes.items())
                 for components, size in sizes.items():
                     for row in rows[[*components]] if arms[components] * size > least else ():
+                        if self._is_free(row):
+                            continue
                         by_shaft = self._by_shaft(row)
                         bars.append(sum(bar for bar, _ in by_shaft.values()) / size)
                         shares.append(_shares(by_shaft))
@@ -100,14 +102,16 @@ class StaticErrors:
 
     def error_bar(self, row: np.ndarray) -> float | None:
         """Return the error bar of ``row @ coordinates``; None without a harmonic shaft, and where
-        the number grows as the train turns.
+        the number grows in a motion that nothing resists.
         """
-        if not self.bounds:
-            return None
-        turns = np.abs(row @ self.tangent.free).max(initial=0.0)
-        if turns > ROUNDING * np.linalg.norm(row):
+        if not self.bounds or self._is_free(row):
             return None
         return sum(bar for bar, _ in self._by_shaft(row).values())
+
+    def _is_free(self, row: np.ndarray) -> bool:
+        """Return whether a number grows as the train turns, or across a bearing on one element."""
+        grows = np.abs(row @ self.tangent.free).max(initial=0.0)
+        return bool(grows > ROUNDING * np.linalg.norm(row))
 
     def _by_shaft(self, row: np.ndarray) -> dict[str, tuple[float, np.ndarray]]:
         """Return the part of every shaft in the error bar of a number, and that of the cells (ne,)

@@ -13,6 +13,7 @@ from solidgear.variants.optimise.pool import Design
 from solidgear.variants.optimise.search import FINE, TOLERANCE, Trace
 from solidgear.variants.optimise.wish import Wish
 from solidgear.variants.sweep.entries import Entry, in_si
+from solidgear.variants.sweep.shaft_numbers import LOCAL, NOT_RATED, SAFETIES
 
 #: relative error bar that is rounding alone
 ROUNDING = 1e-9
@@ -30,6 +31,8 @@ def sentences(optimum: Outcome, units: Units = ENGINEERING) -> Iterator[str]:
         yield from _front(optimum, units)
     else:
         yield from _best(optimum, optimum.best, units)
+    if optimum.best is not None:
+        yield from _not_rated(optimum, optimum.front or [optimum.best])
     yield from solved_all_of(optimum)
     yield from _refused(optimum)
     for sentence in optimum.followed:
@@ -125,6 +128,16 @@ def _best(optimum: Outcome, best: Design, units: Units) -> Iterator[str]:
         yield f"{count} more {designs} as good within the error bars."
     for label in optimum.at_end:
         yield f"{label} is at the end of its range; a wider range may hold a better design."
+
+
+def _not_rated(optimum: Outcome, designs: Sequence[Design]) -> Iterator[str]:
+    """Yield a sentence on what has no safety in designs that are judged by one."""
+    asked = {wish.name.replace(" ", "_") for wish in (*optimum.goals, *optimum.keep)}
+    if not asked & {*SAFETIES, LOCAL}:
+        return
+    names = [row.get(NOT_RATED) for design in designs for row in design.rows]
+    for name in dict.fromkeys(filter(None, names)):
+        yield f"Not rated, and perhaps worse: {name}."
 
 
 def numbers(optimum: Outcome, design: Design, units: Units) -> str:

@@ -13,6 +13,7 @@ from solidgear.strength.acting import FEW
 from solidgear.strength.deflection.at_rest import Measured, deflections
 from solidgear.strength.load import AT_REST
 from solidgear.strength.stress.at_rest import stress_at_rest
+from solidgear.strength.stress.notch_tables import not_rated
 from solidgear.strength.stress.rating import Rating
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import JUDGE
@@ -34,6 +35,8 @@ FATIGUE, YIELD, CRACK = "fatigue_safety", "yield_safety", "crack_safety"
 LEAST_FATIGUE, LEAST_YIELD = f"{FATIGUE}_least", f"{YIELD}_least"
 SAFETIES = (FATIGUE, YIELD, CRACK, LEAST_FATIGUE, LEAST_YIELD)
 WORST, LOCAL = "worst_notch", "notch_stress"
+#: column of what has neither safety nor stress, such as sharp corners, which may be worse
+NOT_RATED = "not_rated"
 BAR = " bar"
 
 
@@ -57,7 +60,7 @@ def columns_of(scene: Scene, ask: Sequence[str], barred: bool) -> dict[str, type
         out |= life_columns(b.name for b in scene.bearings if b.catalogue is not None)
     if STRESS in ask:
         out |= dict.fromkeys(SAFETIES, float) | {f"{FATIGUE}{BAR}": float}
-        out |= {LOCAL: float, f"{LOCAL}{BAR}": float, WORST: str}
+        out |= {LOCAL: float, f"{LOCAL}{BAR}": float, WORST: str, NOT_RATED: str}
     return out
 
 
@@ -142,6 +145,7 @@ def _stress(scene: Scene, model: str) -> dict[str, Any]:
         (stressed,) = stress_at_rest(assembly, point, model).shafts
         if not stressed.found.worst:
             raise SolidgearError("no notch has a stress: the shaft has no fillets or other notches")
+        out[NOT_RATED] = "; ".join(not_rated(stressed.found))
         for fillet in stressed.found.notches:
             stress = fillet.local.amplitude + abs(fillet.local.mean)
             if stress >= out.get(LOCAL, 0.0):

@@ -30,6 +30,7 @@ from solidgear.variants.sweep.curves import Curve, Curves
 from solidgear.variants.sweep.error_chart import error_chart, error_table
 from solidgear.variants.sweep.error_curves import ErrorCurves
 from solidgear.variants.sweep.file_task import Swept
+from solidgear.variants.sweep.shaft_numbers import NOT_RATED
 from solidgear.variants.sweep.train_task import CONTACT, MODES, MOST_MODES, PARTS, TrainTask
 
 #: file of all rows in a folder
@@ -108,11 +109,18 @@ def _scene_sheet(result: Swept, units: Units, chart: Path | None) -> Sheet:
         units,
         lead=f"Rows in {result.path.name}.",
         solved=_solved(result),
-        notes=[note, *result.task.variants.followed],
+        notes=[note, *result.task.variants.followed, *_not_rated(result)],
         chart=chart,
         cautions=result.cautions,
         data=plain(result) | {"cautions": result.cautions},
     )
+
+
+def _not_rated(result: Swept) -> list[str]:
+    """Return a sentence on what has no safety, and may be worse than the worst notch."""
+    names = [*dict.fromkeys(filter(None, result.columns.get(NOT_RATED, [])))]
+    rest = f" (and {len(names) - 1} more in other rows)" if len(names) > 1 else ""
+    return [f"Not rated, and perhaps worse: {names[0]}{rest}."] if names else []
 
 
 def _train_sheet(result: Swept, task: TrainTask, units: Units, chart: Path | None) -> Sheet:
