@@ -390,7 +390,7 @@ class Scene(Displayed, Model):
     def read_from(self, document: Any) -> Scene:
         """Return the same scene with the document that it was read from."""
         out = self.unjudged()
-        out._origin = Origin(document, out)
+        out._origin = Origin(document, out.unjudged())  # a copy: no circle through its origin
         return out
 
     @property

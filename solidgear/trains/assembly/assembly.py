@@ -150,7 +150,9 @@ class Assembly:
             train, self.contacts, self.scenes, self.places
         )
         point = train.point
-        self._flanks: dict[bool, Assembly] = {point is not None and point.coast: self}
+        #: flank that is in contact here, and trains on other ones
+        self._coast: bool | None = point is not None and point.coast
+        self._flanks: dict[bool, Assembly] = {}
         #: trains without cuts, by the model that settles them: built once for all ends of open data
         self._plain: dict[str, Assembly] = {}
 
@@ -438,7 +440,8 @@ class Assembly:
         assembly = copy(self)
         # bodies hold no bearings; lumped models, condensed on them, do
         bodies = {k: m for k, m in self._models.items() if k[1].partition("/")[0] not in LUMPED}
-        assembly._models, assembly.scenes, assembly.errors, assembly._flanks = bodies, {}, {}, {}
+        assembly._models, assembly.scenes, assembly.errors = bodies, {}, {}
+        assembly._coast, assembly._flanks = None, {}
         assembly._followed = dict(self._followed)
         assembly._chosen_at_rest = set(self._chosen_at_rest)
         return assembly
@@ -498,8 +501,11 @@ class Assembly:
         """Return the same train with the teeth in contact on one flank: `coast` is True for that
         which the file does not name.
         """
+        if coast == self._coast:
+            return self
         if coast not in self._flanks:
             assembly = copy(self)
+            assembly._coast, assembly._flanks = coast, {}
             assembly.contacts, assembly.errors = contacts(self.train, coast), {}
             assembly.stages = stages_at_work(
                 self.train, assembly.contacts, self.scenes, self.places, coast

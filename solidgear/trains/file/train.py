@@ -276,7 +276,7 @@ class Train(Model):
     def read_from(self, document: Document) -> Train:
         """Return the same train with the document that it was read from."""
         out = self.unjudged()
-        out._origin = Origin(document, out)
+        out._origin = Origin(document, out.unjudged())  # a copy: no circle through its origin
         return out
 
     @property
