@@ -351,12 +351,13 @@ class Scene(Displayed, Model):
         ----------
         path : str or path, optional
             File to write, whole or not at all. Its name is that of the scene, unless the scene has
-            another.
+            another, and files are named from its folder.
 
         Returns
         -------
         str
-            Text that `solidgear.load` reads back equal.
+            Text that `solidgear.load` reads back equal: without a path wherever it lies, for it holds
+            the name of the scene and full paths of files.
 
         Raises
         ------

@@ -247,12 +247,13 @@ class Train(Model):
         Parameters
         ----------
         path : str or path, optional
-            File to write, whole or not at all.
+            File to write, whole or not at all; files are named from its folder.
 
         Returns
         -------
         str
-            Text that `solidgear.load_train` reads back equal.
+            Text that `solidgear.load_train` reads back equal: without a path wherever it lies, for it
+            holds the name of the train and full paths of files.
 
         Raises
         ------
