@@ -18,7 +18,7 @@ What there is, each with an example in its help:
 
     scenes       load, Scene, Segment, Bearing, Port, PointMass, ShaftLoad, LoadCase, Housing,
                  Lubrication, Material, STEEL, Ask
-    questions    answer, compare, condense, modes, check, bearing, deflect, stress, sheet, turn
+    questions    answer, compare, stiffness, modes, condense, check, bearing, deflect, stress, sheet, turn
     studies      sweep, sensitivities, optimise, budget
     measured     correlate, identify, overlay, load_measured, Measured, Responses, SurfacePoints
     bodies       build, solid_body, Body, Supports
@@ -29,7 +29,7 @@ What there is, each with an example in its help:
                  MeshVector, BearingSpring, RowSpring, RigidBody, Inertia, PortInertia, Placed
     planetary    PlanetaryTeeth, PlanetaryStage, CentralMember, Planet, carrier_turn, FixedSupport,
                  PlanetError, elastic_ring
-    exchange     export, port_matrices, read_matrices, PortMatrices
+    exchange     import_rexs, export, port_matrices, read_matrices, PortMatrices
     errors       SolidgearError, SceneError
 
 A study takes the path of a file, its tables as a dict, a Scene or a Train. Names are imported when

@@ -11,6 +11,8 @@ from solidgear.core.gears.wheel import Rack as Rack
 from solidgear.core.gears.wheel import Wheel as Wheel
 from solidgear.core.gears.wheel_pair import WheelPair as WheelPair
 from solidgear.core.judge.answer import answer as answer
+from solidgear.core.judge.asked import modes as modes
+from solidgear.core.judge.asked import stiffness as stiffness
 from solidgear.core.ladder import build as build
 from solidgear.core.loading import load as load
 from solidgear.core.reduction.craig_bampton import craig_bampton as craig_bampton
@@ -54,7 +56,6 @@ from solidgear.core.scene import (
 from solidgear.core.scene import (
     ShaftLoad as ShaftLoad,
 )
-from solidgear.core.solve.modes import modes as modes
 from solidgear.core.solve.statics import condense as condense
 from solidgear.core.system import (
     BearingSpring as BearingSpring,
@@ -105,6 +106,7 @@ from solidgear.datasheet.study import sheet as sheet
 from solidgear.exchange.export import export as export
 from solidgear.exchange.matrices.formats import read_matrices as read_matrices
 from solidgear.exchange.matrices.source import port_matrices as port_matrices
+from solidgear.exchange.rexs.study import import_rexs as import_rexs
 from solidgear.measured.correlate import correlate as correlate
 from solidgear.measured.data import Measured as Measured
 from solidgear.measured.data import load_measured as load_measured

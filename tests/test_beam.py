@@ -13,7 +13,7 @@ import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.core.models.beam.element import shear_coefficient
 from solidgear.core.scene import STEEL, Bearing, Port, Scene, Segment
-from validation.manual.exact import Tube, beam_frequencies
+from validation.manual.exact import Elastic, Tube, beam_frequencies
 
 LENGTH, RADIUS = 0.5, 0.03
 HELD = 0.04
@@ -33,7 +33,8 @@ def kappa_solid(nu=NU):
 
 def free_free(count, bore=0.0):
     """Frequencies (rad/s) of Timoshenko's equations with Hutchinson's coefficient."""
-    return 2 * np.pi * np.array(beam_frequencies([Tube(LENGTH, RADIUS, bore / 2)], [], count))
+    tube = Tube(LENGTH, RADIUS, bore / 2)
+    return 2 * np.pi * np.array(beam_frequencies([tube], [], count, Elastic(E, NU, RHO)))
 
 
 def bending(modeset, count):

@@ -24,7 +24,7 @@ from tests.plain import render_page
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 #: quick meshes; two points that both see the same mesh error are compared on them
 OPTIONS = {"euler": {}, "timoshenko": {}, "harmonic": {"order": 3, "layers": 1}}
-E, NU, D, L = 207e9, 0.3, 0.04, 0.8
+E, NU, D, L = sg.STEEL.E, sg.STEEL.nu, 0.04, 0.8
 INERTIA, AREA, POLAR = np.pi * D**4 / 64, np.pi * D**2 / 4, np.pi * D**4 / 32
 A, B = 0.25, 0.6
 

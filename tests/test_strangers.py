@@ -241,7 +241,7 @@ def test_what_could_not_be_checked_does_not_hold(monkeypatch):
     def gaps(probe, model):
         raise MemoryError("not enough memory")
 
-    monkeypatch.setattr(Probe, "_gaps", gaps)
+    monkeypatch.setattr(Probe, "gaps", gaps)
     # slender and plain: no other guard speaks against its beams
     rod = sg.Segment.cylinder("rod", length=2.0, diameter=0.02)
     scene = sg.Scene.from_parts([rod])

@@ -120,11 +120,13 @@ def test_a_reduced_beam_has_the_modes_of_the_beam_on_any_springs():
     gearbox, listed = sg.load(GEARBOX), 6
     beam = sg.build(gearbox, "timoshenko")
     reduced = ReducedBeam(beam, listed + 4)
-    first = NamedShapes.of(sg.modes(beam, gearbox, listed), reduced.shapes(as_supports(gearbox)))
+    first = NamedShapes.of(
+        sg.modes(beam, gearbox, listed), reduced.shapes(as_supports(gearbox), beam)
+    )
     for factor in (0.3, 1.0, 3.0):
         scene = gearbox.with_bearing_scale(factor)
         direct = sg.modes(beam, scene, listed + 4)
-        shapes = reduced.shapes(as_supports(scene))
+        shapes = reduced.shapes(as_supports(scene), beam)
         elastic = [m for m in direct.modes for _ in range(m.multiplicity) if m.frequency_hz]
         expected = [m.frequency_hz for m in elastic][: len(shapes.frequency_hz)]
         assert shapes.frequency_hz[: len(expected)] == pytest.approx(expected, rel=1e-5)
@@ -142,7 +144,7 @@ def test_a_reduced_beam_keeps_its_modes_beside_a_clamp():
     beam = sg.build(scene, "timoshenko")
     direct = sg.modes(beam, scene, 4)
     expected = [m.frequency_hz for m in direct.modes for _ in range(m.multiplicity)]
-    shapes = ReducedBeam(beam, 10).shapes(as_supports(scene))
+    shapes = ReducedBeam(beam, 10).shapes(as_supports(scene), beam)
     assert shapes.frequency_hz[: len(expected)] == pytest.approx(expected, rel=1e-5)
 
 

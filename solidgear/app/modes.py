@@ -9,25 +9,21 @@ import typer
 
 from solidgear.core import (
     LADDER,
-    MOST_MODES,
     Mode,
     ModeSet,
     OpenNumbers,
     Quantity,
     Settled,
     SolidgearError,
-    as_supports,
     bars_of_modes,
     listed,
-    show,
 )
-from solidgear.core import modes as solve
-from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.errors import NoBounds
+from solidgear.core.judge.asked import checked_number, modes_of_scene
 from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bounded import NOTHING_BEYOND
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
-from solidgear.core.judge.hidden import complete_list, less_bars
+from solidgear.core.judge.hidden import less_bars
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.plain import plain
 from solidgear.core.solve.mixtures import mixtures
@@ -72,19 +68,16 @@ def modes(
     turns = speed_of(speed)
     if max_frequency is not None and not max_frequency > 0:
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
-    if n is not None and not 1 <= n <= MOST_MODES:
-        raise SolidgearError(f"-n {show(n)}: give 1 to {MOST_MODES} modes")
+    asked = None if n is None else checked_number(n)
     loaded = load(scene, case)
-    asked = loaded.ask.modes if n is None else n
+    asked = asked or loaded.ask.modes
     highest_hz = max_frequency or loaded.ask.max_frequency
 
     def study(progress: Progress) -> Sheet:
         body, settled = model.body(loaded, "modes", progress)
         is_solid = bool(LADDER[body.fidelity].bars_by)
-        room = ROOM if is_solid and settled is not None else 0.0
-        mode_set = solve(body, loaded, asked, max_frequency=highest_hz, count=count, room=room)
-        if settled is not None and is_solid:
-            mode_set = complete_list(loaded, body, as_supports(loaded), mode_set)
+        how = {"max_frequency": highest_hz, "count": count}
+        mode_set = modes_of_scene(loaded, body, settled, asked, **how)
         whole = mode_set.whole if count and not is_solid else mode_set
         reason = model.without_bars(settled)
         bars: dict[str, float] = {}

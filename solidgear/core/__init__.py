@@ -32,6 +32,7 @@ if TYPE_CHECKING:
     from solidgear.core.loading import explained, load
     from solidgear.core.machine.threads import pinned
     from solidgear.core.machine.whole_file import whole
+    from solidgear.core.named import ByName
     from solidgear.core.quantity import (
         COMPLIANCE,
         QUANTITIES,
@@ -50,7 +51,7 @@ if TYPE_CHECKING:
         is_train,
         name_of_source,
     )
-    from solidgear.core.scene.limits import MOST_MODES, TOUCH
+    from solidgear.core.scene.limits import TOUCH
     from solidgear.core.scene.outline import Outline
     from solidgear.core.scene.shaft import without_axis
     from solidgear.core.scene.typed import Model
@@ -70,6 +71,7 @@ __all__ = [
     "Bearing",
     "Block",
     "Body",
+    "ByName",
     "COMPLIANCE",
     "Condensed",
     "DIMENSIONS",
@@ -79,7 +81,6 @@ __all__ = [
     "HARMONIC",
     "LADDER",
     "Length",
-    "MOST_MODES",
     "Mode",
     "ModeName",
     "ModeSet",
@@ -173,6 +174,7 @@ _WHERE = {
     "load": "solidgear.core.loading",
     "pinned": "solidgear.core.machine.threads",
     "whole": "solidgear.core.machine.whole_file",
+    "ByName": "solidgear.core.named",
     "COMPLIANCE": "solidgear.core.quantity",
     "QUANTITIES": "solidgear.core.quantity",
     "Quantity": "solidgear.core.quantity",
@@ -186,7 +188,6 @@ _WHERE = {
     "coned": "solidgear.core.scene.coned",
     "Outline": "solidgear.core.scene.outline",
     "TOUCH": "solidgear.core.scene.limits",
-    "MOST_MODES": "solidgear.core.scene.limits",
     "without_axis": "solidgear.core.scene.shaft",
     "Document": "solidgear.core.scene.document",
     "Source": "solidgear.core.scene.document",

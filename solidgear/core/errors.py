@@ -50,6 +50,12 @@ class SolidgearError(Exception):
         self.args = tuple(_spelled(text, spell) for text in self.args)
 
 
+class NoSuchName(SolidgearError, KeyError):
+    """A name that a result has not, in brackets: a `KeyError`, as of a dict."""
+
+    __str__ = Exception.__str__  # a KeyError would show its text in quotes
+
+
 class NoBounds(SolidgearError):
     """A 3D body whose error cannot be bounded, on a finer mesh perhaps."""
 

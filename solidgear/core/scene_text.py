@@ -11,14 +11,14 @@ from solidgear.core.loading import part_of, scene_of
 from solidgear.core.machine.whole_file import write_page
 from solidgear.core.scene import file
 from solidgear.core.scene.model import Scene
-from solidgear.core.scene.rewriting import Canonical, text_of
+from solidgear.core.scene.rewriting import NOWHERE, Canonical, text_of
 from solidgear.core.scene.writing import tables_of, unsettled_tables
 
 
 def toml_of(scene: Scene, path: str | os.PathLike | None = None) -> str:
     """Return the text of the file of a scene, and write it to a path if one is given."""
     document = scene.document
-    place = os.fspath(path or (document.path if document is not None else scene.name))
+    place = os.fspath(path or NOWHERE)
     text = text_of(document, path, _canonical(), unsettled_tables(scene))
     if any(bearing.catalogue is not None for bearing in scene.bearings):
         text = _settled(text, place, scene)

@@ -69,10 +69,12 @@ def one_shaft(
     name: str = "",
     points: Sequence[str] = (),
     before: Settled | None = None,
+    guarded: bool = True,
     progress: Progress = lambda _: None,
 ) -> OneShaft:
     """Solve a shaft by the cheapest solid whose error bars are within a relative tolerance, with
-    numbers of further lumped points; `before` as in :func:`solidgear.core.judge.settle.settle`.
+    numbers of further lumped points; `before` as in :func:`solidgear.core.judge.settle.settle`. Where
+    it is not `guarded` it has no cautions, which may cost a beam and a light solid.
     """
 
     def say(text: str) -> None:
@@ -102,7 +104,7 @@ def one_shaft(
     return OneShaft(
         letter=letter,
         name=name,
-        cautions=tuple(cautions(scene, body)),
+        cautions=tuple(cautions(scene, body)) if guarded else (),
         scene=scene,
         settled=settled,
         values=solution.quantities,

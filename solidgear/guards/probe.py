@@ -5,7 +5,7 @@ models; each is solved once, when a guard first asks for it.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from functools import cache, cached_property
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -76,7 +76,8 @@ class Probe:
         self.supports = as_supports(scene).on_stations(scene.stations)
         self.solutions = dict(solutions or {})
         self.meshes: dict[str, int] = {}  # number, of models solved here
-        self.tied, self.gaps = cache(self._tied), cache(self._gaps)
+        self._tied: dict[str, Values] = {}
+        self._gaps: dict[str, list[Deviation]] = {}
 
     def instead(self, usual: str = "the harmonic solid", *models: str) -> str:
         """Return advice in place of a model that does not hold: `usual`, or, where features of the
@@ -133,18 +134,26 @@ class Probe:
             return self.body.mesh
         return self.solutions[model].body.mesh if model in self.solutions else {}
 
-    def _tied(self, attachment: str) -> Values:
-        """Compute the numbers of a harmonic solid, on one mesh for all, with one attachment
+    def tied(self, attachment: str) -> Values:
+        """Return the numbers of a harmonic solid, on one mesh for all, with one attachment
         (``rigid``: at the bearings).
         """
-        scene = attached(self.scene, attachment)
-        n, upto = max(scene.ask.modes, ENOUGH), scene.ask.max_frequency
-        return solve(scene, "harmonic", n, max_frequency=upto, **HARMONIC).quantities
+        if attachment not in self._tied:
+            scene = attached(self.scene, attachment)
+            n, upto = max(scene.ask.modes, ENOUGH), scene.ask.max_frequency
+            solution = solve(scene, "harmonic", n, max_frequency=upto, **HARMONIC)
+            self._tied[attachment] = solution.quantities
+        return self._tied[attachment]
 
-    def _gaps(self, model: str) -> list[Deviation]:
+    def gaps(self, model: str) -> list[Deviation]:
         """Return deviations of a beam from the light solid in the judged quantities, the largest
         first.
         """
+        if model not in self._gaps:
+            self._gaps[model] = self._compared(model)
+        return self._gaps[model]
+
+    def _compared(self, model: str) -> list[Deviation]:
         for most in (1, LIGHT):
             pair = {model: self.solution(model), "harmonic": self.solution("harmonic", most)}
             names = judged(self.scene)

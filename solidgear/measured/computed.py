@@ -11,7 +11,6 @@ import numpy as np
 
 from solidgear.core import (
     LADDER,
-    MOST_MODES,
     BarredMode,
     Body,
     Mode,
@@ -26,6 +25,7 @@ from solidgear.core import (
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import mode_bars
 from solidgear.core.machine.memory import NoRoom
+from solidgear.core.scene.limits import MOST_MODES
 from solidgear.variants.sensitivity.adjoint import mode_form
 from solidgear.variants.sweep.bench import surface
 

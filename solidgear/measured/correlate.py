@@ -24,7 +24,7 @@ from solidgear.core import (
 from solidgear.core.plain import plain
 from solidgear.measured.alignment import Peak
 from solidgear.measured.computed import Computed, computed_up_to
-from solidgear.measured.data import Measured, MeasuredMode, load_measured
+from solidgear.measured.data import Measured, MeasuredMode, MeasuredSource, load_measured
 from solidgear.measured.same_part import FAR_SHIFTS, Common, Likeness, alignment_of
 from solidgear.measured.shapes import OnPoints
 
@@ -177,7 +177,7 @@ class Correlation(Sheeted):
 @pinned
 def correlate(
     scene: Source,
-    measured: Source | Measured,
+    measured: MeasuredSource,
     tol: float | str | None = None,
     progress: Callable[[str], None] = lambda _: None,
 ) -> Correlation:
@@ -187,8 +187,9 @@ def correlate(
     ----------
     scene : path, dict or Scene
         A scene: its file (TOML), the tables of one, or an object.
-    measured : path, dict or Measured
-        Resonances: a ``.toml``, ``.csv``, ``.unv`` or ``.uff`` file, or the tables of a TOML file.
+    measured : path, dict, Measured or sequence of float
+        Resonances: a ``.toml``, ``.csv``, ``.unv`` or ``.uff`` file, the tables of a TOML file, or
+        frequencies alone, in ascending order, Hz.
     tol : float, optional
         Relative error bar that modes are brought to; a tenth of the tolerance of the scene by
         default.

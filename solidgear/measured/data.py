@@ -25,7 +25,7 @@ import re
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Annotated, Any, ClassVar
+from typing import Annotated, Any, ClassVar, TypeAlias
 
 import numpy as np
 from pydantic import AfterValidator, BeforeValidator, Field, PrivateAttr, model_validator
@@ -357,14 +357,18 @@ class Measured(Model):
         )
 
 
-def load_measured(source: Source | Measured | Responses) -> Measured:
+#: measured data, or what they are read from
+MeasuredSource: TypeAlias = Source | Measured | Responses | Sequence[float]
+
+
+def load_measured(source: MeasuredSource) -> Measured:
     """Read measured resonances, or find them in frequency responses.
 
     Parameters
     ----------
-    source : path, dict or Responses
+    source : path, dict, Responses or sequence of float
         A ``.toml`` or ``.csv`` file of resonances; a universal file ``.unv``, ``.uff`` of mode shapes
-        or of frequency responses; the tables of a TOML file; or responses.
+        or of frequency responses; the tables of a TOML file; responses; or frequencies alone, Hz.
 
     Returns
     -------
@@ -386,6 +390,8 @@ def load_measured(source: Source | Measured | Responses) -> Measured:
         return source
     if isinstance(source, Responses):
         return measured_from_responses(source)
+    if isinstance(source, list | tuple | np.ndarray):
+        source = {"mode": [{"frequency": frequency} for frequency in source]}
     name = os.fspath(source) if isinstance(source, str | os.PathLike) else "measured data"
     if isinstance(source, Document):
         name = source.path

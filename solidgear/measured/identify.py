@@ -21,6 +21,7 @@ import scipy.linalg as sla
 from scipy.optimize import linear_sum_assignment
 
 from solidgear.core import (
+    ByName,
     Document,
     Scene,
     Sheeted,
@@ -39,7 +40,7 @@ from solidgear.core.scene.paths import Tables, replace_entry
 from solidgear.core.springs import modes_on_springs
 from solidgear.measured.computed import Computed, computed_like, computed_up_to
 from solidgear.measured.correlate import DEVIATIONS, SURE, placed_in
-from solidgear.measured.data import Measured, load_measured
+from solidgear.measured.data import Measured, MeasuredSource, load_measured
 from solidgear.measured.fit import ALIKE, SAME, End, Fit, best_of, varied_of
 from solidgear.measured.same_part import Likeness
 from solidgear.variants.sensitivity.adjoint import mode_form
@@ -101,7 +102,7 @@ class Predicted:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Identification(Sheeted):
+class Identification(ByName[Identified], Sheeted):
     """Entries identified from measured resonances."""
 
     shown: ClassVar[str] = "measured.command:entries"
@@ -140,8 +141,10 @@ class Identification(Sheeted):
     remarks: tuple[str, ...] = ()  #: on how the file of resonances was read
     alike: tuple[tuple[float, ...], ...] = ()  #: other values of all entries, SI, that fit as well
 
-    def __getitem__(self, path: str) -> Identified:
-        return next(entry for entry in self.entries if entry.path == path)
+    @property
+    def by_name(self) -> dict[str, Identified]:
+        """Entries by their paths."""
+        return {entry.path: entry for entry in self.entries}
 
     @property
     def sentences(self) -> list[str]:
@@ -227,7 +230,7 @@ WIDER = 1.15
 @pinned
 def identify(
     scene: Source,
-    measured: Source | Measured,
+    measured: MeasuredSource,
     vary: str | Iterable[str],
     *,
     tol: float | str = 2e-4,

@@ -67,6 +67,10 @@ def dataset(table: Framed) -> Any:
         # places in the order of the rows, and not of their sizes
         result = frame.set_index(axes).to_xarray()
         result = result.reindex({axis: frame[axis].unique() for axis in axes})
+        for name, column in zip(quantities(table), table.framed[0]):
+            if column.over:
+                values = frame.groupby(column.over, sort=False)[name].first()
+                result[name] = (column.over, values[result[column.over].values].to_numpy())
     else:
         result = _over_one(xarray, frame, axes[0])
     for name, unit in units(table).items():

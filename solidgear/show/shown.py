@@ -120,7 +120,7 @@ def shapes_table(of: str, place: str, rows: Sequence[Sequence[Any]]) -> Table:
     """Return motions in all shapes, of rows with shape, frequency, place, component and motion."""
     columns = [
         Column("shape", axis=True),
-        Column("frequency [Hz]"),
+        Column("frequency [Hz]", over="shape"),
         Column(place, axis=True),
         Column("component", axis=True),
         Column("motion"),

@@ -73,6 +73,7 @@ class Column:
     name: str = ""
     unit: str = ""
     axis: bool = False  #: whether other columns are over its values, as over a frequency
+    over: str = ""  #: the one axis that its values depend on, where a table has several
     hidden: bool = False  #: whether it is in frames alone
 
     def written(self, value: Any, nothing: str = DASH) -> str:

@@ -9,6 +9,7 @@ GROUND = {
     "core.springs",
     "core.display",
     "core.plain",
+    "core.named",
     "core.machine",
     "core.registry",
 }
@@ -19,6 +20,7 @@ CORE = {
     "core.factoring": set(),
     "core.display": set(),
     "core.plain": set(),
+    "core.named": {"core.errors"},
     "core.registry": set(),
     "core.frames": {"core.errors"},
     "core.springs": {"core.errors"},

@@ -15,7 +15,7 @@ from typing import Any, ClassVar, Generic, TypeVar
 import numpy as np
 
 from solidgear.comparison.two.differences import Difference
-from solidgear.core import COMPLIANCE, BarredMode, Quantity, Sheeted
+from solidgear.core import COMPLIANCE, BarredMode, ByName, Quantity, Sheeted
 from solidgear.core.judge.change import Change, ModePair, Side
 from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
@@ -74,7 +74,7 @@ class NumberChange:
 
 
 @dataclass(frozen=True, repr=False, eq=False)
-class Beside(Sheeted, ABC, Generic[S, M]):
+class Beside(ByName[NumberChange], Sheeted, ABC, Generic[S, M]):
     """Two designs of a kind beside each other."""
 
     kind: ClassVar[str]  #: in words
@@ -97,8 +97,10 @@ class Beside(Sheeted, ABC, Generic[S, M]):
         """Sides by their letters in files."""
         return {"a": self.a, "b": self.b}
 
-    def __getitem__(self, name: str) -> NumberChange:
-        return next(number for number in self.changes if number.name == name)
+    @property
+    def by_name(self) -> dict[str, NumberChange]:
+        """Changes of numbers by their names."""
+        return {number.name: number for number in self.changes}
 
     @property
     def cautions(self) -> list[str]:

@@ -278,6 +278,12 @@ class Body(Displayed):
             )
         return families[n]
 
+    def without_results(self) -> Body:
+        """The same body, its families shared, for what is kept with the body: that would hold itself
+        by the body's own cache, in a circle that no reference count frees.
+        """
+        return replace(self, cache=Cache(self.cache.get(_Families, _Families)))
+
     def without_matrices(self) -> Body:
         """The body to be drawn alone, without what it was solved with: its matrices are empty."""
 

@@ -175,7 +175,7 @@ class LoadedPieces:
             groups = _sides(space, seat, x)
             r, y = np.concatenate([side.place for side in groups]).transpose(2, 0, 1)
             weight = np.concatenate([side.length for side in groups]) * w
-            density = self.family.means(r, y - space.body.ports[i].y, weight) @ force
+            density = self.family.means(r, y - space.ports[i].y, weight) @ force
             first = np.cumsum([0, *(len(side.pieces) for side in groups)])
             for side, rows in zip(groups, map(slice, first, first[1:])):
                 value = products(space.rich, side.points)[0][self.order]

@@ -52,7 +52,7 @@ class _Loaded:
         for batch in self.pieces.batches():
             self._eliminate(batch, pieces, lower)
         for i, first in self.first.items():
-            y = space.body.ports[i].y
+            y = space.ports[i].y
             motions = [[1.0, y], [0.0, 1.0]] if self.family.waves == 1 else [[1.0]]
             self.rigid[first : first + self.motions] = np.array(motions)[: self.motions]
         return self._cells_of_mesh(pieces), self._cells_of_mesh(lower)
@@ -109,7 +109,7 @@ class _Loaded:
                 continue  # waves that no motion of a port goes with
             about = rigid.copy()
             if self.family.waves == 1:
-                about[:, 1] -= space.body.ports[i].y * about[:, 0]
+                about[:, 1] -= space.ports[i].y * about[:, 0]
             about[~on_seat] = 0.0
             columns.append(about)
             ids.append(self.first[i] + np.arange(self.motions))

@@ -50,7 +50,7 @@ class RicherSpace:
     tied: dict[int, np.ndarray]
 
     def __init__(self, scene: Scene, body: Body):
-        self.scene, self.body = scene, body
+        self.scene, self.ports = scene, body.ports  # not the body, which keeps this
         geometry: HarmonicMesh = body.geometry  # type: ignore[assignment]
         self.flat = geometry.meridian  #: the mesh of the body
         self.order = geometry.order  #: of its elements
@@ -141,7 +141,7 @@ class RicherSpace:
         self.carrying, self.tied = [], {}
         joined = _short_sides(self.flat)
         stations = {s.name: s for s in self.scene.stations}
-        for index, port in enumerate(self.body.ports):
+        for index, port in enumerate(self.ports):
             station = stations[port.name]
             if port.attachment == "section":
                 cells, side = self._plane(station.y)

@@ -32,6 +32,7 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.loading import load
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.threads import pinned
+from solidgear.core.named import ByName
 from solidgear.core.plain import plain
 from solidgear.core.quantity import ACROSS, QUANTITIES, Quantity
 from solidgear.core.scene.document import Source
@@ -54,7 +55,7 @@ LEAST_TOLERANCE = 1e-9
 
 
 @dataclass(frozen=True, repr=False)
-class Answered(Displayed):
+class Answered(ByName[float], Displayed):
     """An answer and the way to it."""
 
     shown: ClassVar[str] = "answered"
@@ -73,8 +74,10 @@ class Answered(Displayed):
     missing: tuple[Quantity, ...]
     seconds: float
 
-    def __getitem__(self, quantity: str) -> float:
-        return next(v.value for v in self.values if v.quantity == quantity)
+    @property
+    def by_name(self) -> dict[str, float]:
+        """Numbers by their quantities, SI, in the order asked for."""
+        return {v.quantity: v.value for v in self.values}
 
     @property
     def bar(self) -> float:

@@ -30,12 +30,18 @@ class Attached(NamedTuple):
 def with_ports(block: Block, ports: Iterable[Attached]) -> Block:
     """Add all ports, in their order, to a block that has none yet."""
     nothing = sp.csr_matrix((len(block.components), block.size))
-    rows, ties = [nothing[:0]], []
+    rows: list[np.ndarray | sp.spmatrix] = []
+    ties = []
     for index, port in enumerate(ports):
-        rows.append(nothing if port.rows is None else sp.csr_matrix(port.rows))
+        rows.append(nothing if port.rows is None else port.rows)
         if port.held is not None:
             ties.append((index, port.place, port.held))
-    return tie_rigidly(replace(block, ports=sp.vstack(rows).tocsr()), ties)
+    if rows and not any(map(sp.issparse, rows)):
+        # at once: those of a beam, port by port, would take as long as its matrices
+        stacked = sp.csr_matrix(np.vstack(rows))
+    else:
+        stacked = sp.vstack([nothing[:0], *map(sp.csr_matrix, rows)]).tocsr()
+    return tie_rigidly(replace(block, ports=stacked), ties)
 
 
 def tie_rigidly(

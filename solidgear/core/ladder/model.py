@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import asdict
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from solidgear.core.errors import SolidgearError, listed, nearest, show
+from solidgear.core.errors import NoSuchName, SolidgearError, listed, nearest, show
 from solidgear.core.factoring import Factoring
 from solidgear.core.models.kinds import BODIES, CYCLIC
 from solidgear.core.models.options import FACTORING_OPTIONS, Option, checked
@@ -228,7 +228,7 @@ class Ladder:
         for model in self.models:
             if model.name == name:
                 return model
-        raise SolidgearError(
+        raise NoSuchName(
             f"model {show(name, 40)} is unknown{nearest(name, self.names)}; "
             f"use one of {', '.join(self.names)}"
         )

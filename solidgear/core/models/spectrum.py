@@ -102,7 +102,7 @@ class _Chain:
         band = np.zeros((4, 2 * n))
         for i in range(4):
             for j in range(i + 1):
-                np.add.at(band[i - j], 2 * np.arange(n - 1) + j, joints[:, i, j])
+                band[i - j, j : j + 2 * (n - 1) : 2] += joints[:, i, j]
         for k in range(4):
             band[k, : 2 * n - k] /= size[: 2 * n - k] * size[k:]
         values = sla.eig_banded(

@@ -351,12 +351,13 @@ class Scene(Displayed, Model):
         ----------
         path : str or path, optional
             File to write, whole or not at all. Its name is that of the scene, unless the scene has
-            another.
+            another, and files are named from its folder.
 
         Returns
         -------
         str
-            Text that `solidgear.load` reads back equal.
+            Text that `solidgear.load` reads back equal: without a path wherever it lies, for it holds
+            the name of the scene and full paths of files.
 
         Raises
         ------
@@ -390,7 +391,7 @@ class Scene(Displayed, Model):
     def read_from(self, document: Any) -> Scene:
         """Return the same scene with the document that it was read from."""
         out = self.unjudged()
-        out._origin = Origin(document, out)
+        out._origin = Origin(document, out.unjudged())  # a copy: no circle through its origin
         return out
 
     @property

@@ -117,7 +117,8 @@ class Material(Model):
         return self.E / (2 * (1 + self.nu))
 
 
-STEEL = Material(E=2.07e11, nu=0.3, density=7850.0)
+#: the material that files call "steel"
+STEEL = Material(**by_name("steel"))
 
 
 class Segment(Model):

@@ -25,6 +25,8 @@ from solidgear.core.scene.units import POSITION_DECIMALS, quantity, with_unit_of
 Table = Mapping[str, Any]
 #: keys whose values name files, relative to that of their table
 FILES = ("scene", "step", "mesh", "contact_cells", "measured_flank", "matrices", "shapes", "file")
+#: the same of a train or scene, but not of tables in it: a loss factor is called so too
+LIST = "bearings"
 #: words of a file that go where an entry is written in other words
 INSTEAD = {
     "position": ("at", "from", "on", "seat", "face"),
@@ -44,6 +46,8 @@ USUAL = {"attachment": "average"}
 WHOLE = ("uncertain",)
 #: times that a key is written in one way: places in it may count from others in it
 PASSES = 3
+#: path of a text that lies in no file: it says its own name, and where the files that it names are
+NOWHERE = ""
 #: entries at the root before all tables
 FIRST = ("title", "name", "source")
 
@@ -118,14 +122,14 @@ def text_of(
     target: Table,
 ) -> str:
     """Return the text of a file that reads back as canonical tables: that of the document it was
-    read from, as far as that holds, to lie at a path or where it lay.
+    read from, as far as that holds, to lie at a path or, without one, anywhere.
     """
     if document is None or not document.text:
         return written_anew(target)
     if path is not None:  # files named from a folder are found once it is there
         with suppress(OSError):
             os.makedirs(os.path.dirname(os.path.abspath(path)), exist_ok=True)
-    return rewritten(document, os.fspath(path or document.path), canonical, target)
+    return rewritten(document, os.fspath(path or NOWHERE), canonical, target)
 
 
 def written_anew(tables: Table) -> str:
@@ -173,41 +177,47 @@ def _is_deep(value: Any) -> bool:
 
 
 def _moved(document: Document, path: str) -> str:
-    """Return the text of a document with names of files relative to another folder."""
+    """Return the text of a document with names of files relative to another folder, or full paths."""
     import tomlkit  # start-up: not every scene is written
 
     old, new = (os.path.dirname(os.path.abspath(p)) for p in (document.path, path))
-    if old == new:
+    if path != NOWHERE and old == new:
         return document.text
     file = tomlkit.parse(document.text)
     for table, key in list(_named_files(file)):
         names = table[key]
         paths = [os.path.join(old, name) for name in ([names] if isinstance(names, str) else names)]
-        moved = [_relative(p, new) for p in paths]
+        moved = [_in_text(p) if path == NOWHERE else _relative(p, new) for p in paths]
         table[key] = moved[0] if isinstance(names, str) else moved
     return tomlkit.dumps(file)
+
+
+def _in_text(path: str) -> str:
+    """Return a path as files write it on every system."""
+    return os.path.normpath(path).replace(os.sep, "/")
 
 
 def _relative(path: str, folder: str) -> str:
     """Return a path relative to a folder; as it is on another drive of Windows."""
     try:
-        return os.path.relpath(path, folder).replace(os.sep, "/")
+        return _in_text(os.path.relpath(path, folder))
     except ValueError:
         return path
 
 
-def _named_files(value: Any) -> Iterator[tuple[Any, str]]:
-    """Yield the entries that name files, by their tables and keys."""
+def _named_files(value: Any, top: bool = True) -> Iterator[tuple[Any, str]]:
+    """Yield the entries that name files, by their tables and keys, of all of a file or of a table."""
     if isinstance(value, Mapping):
+        names = (*FILES, LIST) if top or "segment" in value else FILES
         for key, entry in value.items():
             texts = [entry] if isinstance(entry, str) else entry if isinstance(entry, list) else []
-            if key in FILES and texts and all(isinstance(text, str) for text in texts):
+            if key in names and texts and all(isinstance(text, str) for text in texts):
                 yield value, key
             else:
-                yield from _named_files(entry)
+                yield from _named_files(entry, top=False)
     elif isinstance(value, list):
         for entry in value:
-            yield from _named_files(entry)
+            yield from _named_files(entry, top=False)
 
 
 # --------------------------------------------------------------------------- ways to write a key

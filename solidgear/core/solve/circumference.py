@@ -139,7 +139,8 @@ def circumference_of(body: Body) -> tuple[Circumference, Displacements] | None:
     if motion is None:
         return None
     fit = body.cache.get(Circumference, lambda: Circumference(geometry.nodes, _volumes(geometry)))
-    return fit, lambda vectors: motion(body.mesh_unknowns(vectors))
+    plain = body.without_results()  # names, which the body keeps, keep what is returned
+    return fit, lambda vectors: motion(plain.mesh_unknowns(vectors))
 
 
 def _volumes(geometry) -> np.ndarray:

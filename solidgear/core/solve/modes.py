@@ -21,6 +21,7 @@ from solidgear.core.body.supports import Holding
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.threads import pinned
+from solidgear.core.named import NamedModes
 from solidgear.core.solve.coupling import decoupled
 from solidgear.core.solve.eigen import Raw
 from solidgear.core.solve.groups import (
@@ -75,7 +76,7 @@ class Mode:
 
 
 @dataclass(frozen=True, repr=False)
-class ModeSet(Displayed):
+class ModeSet(NamedModes[Mode], Displayed):
     """Modes in ascending order of frequency, and the evidence for them."""
 
     shown: ClassVar[str] = "mode_set"
@@ -101,6 +102,11 @@ class ModeSet(Displayed):
     #: all others that were solved to know that the list is whole, as far as none of their family is
     #: missing between: neighbours of modes of the list
     above: tuple[Mode, ...] = ()
+
+    @property
+    def listed_modes(self) -> tuple[Mode, ...]:
+        """Modes of the list."""
+        return self.modes
 
     @property
     def solved(self) -> tuple[Mode, ...]:

@@ -153,7 +153,7 @@ class Names:
     """
 
     def __init__(self, body: Body, supports: Supports, project: Projection):
-        self.body, self.project = body, project
+        self.body, self.project = body.without_results(), project
         self._with_masses = supports.inertia is not None
         self.promised = quarter_turn_change(supports)
         # a part that is not round promises no twins, however near its frequencies lie

@@ -45,11 +45,12 @@ class Supported:
         self.scale = body.scale
         #: the operator inverted is ``K + springs + shift M``, rad^2/s^2
         self.shift = SHIFT * body.scale
-        self._spring, self._seats = self._on_seats(body, supports, spring)
+        self._place, self._seats = self._on_seats(body, supports)
+        self._spring = self._on_group(spring)
         #: (n, q) root of the mass that moves with the ports, ``heavy @ heavy.T``
         self.heavy = np.zeros((self.size, 0))
         self._mass_update: _MassUpdate | None = None
-        masses = self._root_on_ports(body, supports, supports.masses)
+        masses = self._root_on_ports(supports.masses)
         if masses.shape[1]:
             self._mass_update = _MassUpdate(self, masses)
             self.heavy = masses
@@ -73,39 +74,41 @@ class Supported:
             self.free = self.free @ (v[:, keep] / np.sqrt(w[keep]))
         self._mass_free = self.mass(self.free) if self.free.shape[1] else self.free
         #: (n, r) root of the stiffness of the springs, ``load @ load.T``
-        self.load = self._root_on_ports(body, supports, spring)
+        self.load = self._root_on_ports(spring)
         self._fast = False
         if self.load.shape[1]:
             self._fast = np.abs(spring).max() > FAST
             self._through = self._free_inverse(self.load)
             self._inner = _solver(np.eye(self.load.shape[1]) + self.load.T @ self._through)
 
-    def _on_seats(self, body, supports, matrix) -> tuple[np.ndarray, list]:
-        """Return a matrix of the ports on the components of the group, and for every block the rows
-        of those ports.
+    def _on_seats(self, body, supports) -> tuple[np.ndarray, list]:
+        """Return the places of the components of the group in a vector of six per port, and for every
+        block the rows of those ports.
         """
         m = len(supports.ports)
         components = [list(b.components) for b in self.blocks]
         place = np.concatenate([component_rows(range(m), cs) for cs in components])
-        on_group = matrix[np.ix_(place, place)]
         if not place.size:
-            return on_group, []
+            return place, []
         wanted = supports.attachments or (None,) * m
         index = [body.port_index(name, a) for name, a in zip(supports.ports, wanted)]
         seats = []
         for block, cs in zip(self.blocks, components):
             rows = np.array([len(cs) * p + i for p in index for i in range(len(cs))], int)
             seats.append(block.ports[rows])
-        return on_group, seats
+        return place, seats
 
-    def _root_on_ports(self, body, supports, matrix) -> np.ndarray:
+    def _on_group(self, matrix: np.ndarray) -> np.ndarray:
+        """Return a matrix of the ports on the components of the group."""
+        return matrix[np.ix_(self._place, self._place)]
+
+    def _root_on_ports(self, matrix: np.ndarray) -> np.ndarray:
         """Return the (n, r) root of a matrix of the ports, in the unknowns of the group."""
-        on_group, seats = self._on_seats(body, supports, matrix)
-        if not seats:
+        if not self._seats:
             return np.zeros((self.size, 0))
-        root = root_of(on_group)
-        cuts = np.cumsum([0] + [seat.shape[0] for seat in seats])
-        return np.vstack([seat.T @ root[a:b] for seat, a, b in zip(seats, cuts, cuts[1:])])
+        root = root_of(self._on_group(matrix))
+        cuts = np.cumsum([0] + [seat.shape[0] for seat in self._seats])
+        return np.vstack([seat.T @ root[a:b] for seat, a, b in zip(self._seats, cuts, cuts[1:])])
 
     def spring_rounding(self, u: np.ndarray) -> np.ndarray:
         """Return the (k,) energy of (n, k) shapes that the last digit of the stiffness entries of

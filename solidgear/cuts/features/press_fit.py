@@ -35,7 +35,7 @@ class PressFit(Stretch):
     >>> fit = PressFit(name="hub", segment="seat", y=0.0, hub_diameter="80 mm", interference="40 um")
     >>> seat = Segment(name="seat", y1=0.05, outer0=0.02, outer1=0.02)
     >>> f"{fit.pressure(seat) / 1e6:.1f} MPa"
-    '78.5 MPa'
+    '78.8 MPa'
     """
 
     needs: ClassVar = (("interference", "fit"),)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -30,6 +30,11 @@ class Imported:
     notes: Notes
     facts: tuple[str, ...]
     has_train: bool = True
+    paths: tuple[Path, ...] = ()  #: of the files, where they are written
+
+    def lying_in(self, folder: Path) -> Imported:
+        """Return the same with the paths of its files in a folder."""
+        return replace(self, paths=tuple(folder / name for name in self.files))
 
 
 def imported(document: Document, name: str) -> Imported:

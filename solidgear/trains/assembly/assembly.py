@@ -144,6 +144,7 @@ class Assembly:
         self.teeth = TeethAtRest(train)  #: what they give at operating points
         #: the train at operating points and places in the ranges of its bearings, where its teeth differ
         self._at_points: dict[Hashable, Assembly] = {}
+        self._point: Hashable = None  #: that of the numbers which stand here
         self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
         #: trains without cuts, by the model that settles them: built once for all ends of open data
         self._plain: dict[str, Assembly] = {}
@@ -157,7 +158,8 @@ class Assembly:
         self.stages: dict[str, StageAtWork] = stages_at_work(
             train, self.contacts, self.scenes, self.places, coast
         )
-        self._flanks: dict[bool, Assembly] = {coast: self}
+        self._coast: bool | None = coast  #: flank that is in contact here
+        self._flanks: dict[bool, Assembly] = {}  #: trains on the other one
 
     @property
     def tolerance(self) -> float:
@@ -443,7 +445,8 @@ class Assembly:
         assembly = copy(self)
         # bodies hold no bearings; lumped models, condensed on them, do
         bodies = {k: m for k, m in self._models.items() if k[1].partition("/")[0] not in LUMPED}
-        assembly._models, assembly.scenes, assembly.errors, assembly._flanks = bodies, {}, {}, {}
+        assembly._models, assembly.scenes, assembly.errors = bodies, {}, {}
+        assembly._coast, assembly._flanks = None, {}
         assembly._followed = dict(self._followed)
         assembly._chosen_at_rest = set(self._chosen_at_rest)
         return assembly
@@ -509,9 +512,11 @@ class Assembly:
         if not self.teeth.asked:
             return self.on_flank(point.coast)
         key = self.teeth.load_that_counts(point), repr(choice)
+        if key == self._point:
+            return self
         if key not in self._at_points:
             assembly = copy(self)
-            assembly.errors = {}
+            assembly._point, assembly._at_points, assembly.errors = key, {}, {}
             assembly._mesh(self.teeth.at(point, choice), point.coast)
             self._at_points[key] = assembly
         return self._at_points[key]
@@ -520,8 +525,11 @@ class Assembly:
         """Return the same train with the teeth in contact on one flank: `coast` is True for that
         which the file does not name.
         """
+        if coast == self._coast:
+            return self
         if coast not in self._flanks:
             assembly = copy(self)
+            assembly._coast, assembly._flanks = coast, {}
             assembly.contacts, assembly.errors = contacts(self.train, coast), {}
             assembly.stages = stages_at_work(
                 self.train, assembly.contacts, self.scenes, self.places, coast

@@ -8,7 +8,6 @@ from typing import Annotated, Any, ClassVar, Literal
 from pydantic import BeforeValidator, Field, model_validator
 
 from solidgear.core import (
-    MOST_MODES,
     Length,
     Model,
     PositiveLength,
@@ -18,6 +17,7 @@ from solidgear.core import (
     SolidgearError,
     Written,
 )
+from solidgear.core.scene.limits import MOST_MODES
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import (
     TYPED,

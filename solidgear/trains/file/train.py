@@ -249,12 +249,13 @@ class Train(Model):
         Parameters
         ----------
         path : str or path, optional
-            File to write, whole or not at all.
+            File to write, whole or not at all; files are named from its folder.
 
         Returns
         -------
         str
-            Text that `solidgear.load_train` reads back equal.
+            Text that `solidgear.load_train` reads back equal: without a path wherever it lies, for it
+            holds the name of the train and full paths of files.
 
         Raises
         ------
@@ -278,7 +279,7 @@ class Train(Model):
     def read_from(self, document: Document) -> Train:
         """Return the same train with the document that it was read from."""
         out = self.unjudged()
-        out._origin = Origin(document, out)
+        out._origin = Origin(document, out.unjudged())  # a copy: no circle through its origin
         return out
 
     @property

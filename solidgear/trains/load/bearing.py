@@ -15,6 +15,7 @@ from solidgear.bearings.duty import LivesOverPoints
 from solidgear.bearings.study import BearingFacts, bearing_facts, loaded_by, over_load
 from solidgear.core import (
     Body,
+    ByName,
     Scene,
     Sheeted,
     SolidgearError,
@@ -32,7 +33,7 @@ from solidgear.show.units import Units
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SolvedBearings(Sheeted):
+class SolvedBearings(ByName[BearingFacts | LivesOverPoints], Sheeted):
     """Catalogue bearings of a shaft at its load, or of a train over its operating points."""
 
     sheeted: ClassVar[str] = "trains.load.bearing:bearings_sheet"
@@ -44,12 +45,13 @@ class SolvedBearings(Sheeted):
     scene: Scene | None = field(default=None, repr=False)  #: of a shaft, under its load
     body: Body | None = field(default=None, repr=False)  #: on which its bearings settle
 
-    def __getitem__(self, name: str) -> BearingFacts | LivesOverPoints:
-        by_name: dict[str, BearingFacts | LivesOverPoints] = {
+    @property
+    def by_name(self) -> dict[str, BearingFacts | LivesOverPoints]:
+        """Facts of a bearing, or its lives, by its name."""
+        return {
             **{life.name: life for life in self.lives},
             **{fact.name: fact for fact in self.facts},
         }
-        return by_name[name]
 
     def draw(self, path: str | Path) -> None:
         """Write a chart of stiffness over load, a file that ends in ``.png`` or ``.svg``; of a shaft

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
 from dataclasses import dataclass
 from typing import Any, ClassVar, Unpack
 
 import numpy as np
 
-from solidgear.core import DOF_NAMES, Sheeted, SolidgearError, Source, listed, nearest
+from solidgear.core import DOF_NAMES, Sheeted, Source
+from solidgear.core.named import NamedModes
 from solidgear.show.table import Table
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.train import Train
@@ -18,7 +18,7 @@ from solidgear.trains.options import Models, Reducing, Settings, assembled
 
 
 @dataclass(frozen=True, eq=False, repr=False)
-class SolvedModes(Sheeted):
+class SolvedModes(NamedModes[TrainMode], Sheeted):
     """Modes of a train, with the train that they are of."""
 
     sheeted: ClassVar[str] = "trains.modes.sheet:modes_sheet"
@@ -36,15 +36,10 @@ class SolvedModes(Sheeted):
         """(n,) natural frequencies, Hz."""
         return np.array([mode.frequency_hz for mode in self.modes])
 
-    def __iter__(self) -> Iterator[TrainMode]:
-        return iter(self.modes)
-
-    def __getitem__(self, name: str) -> TrainMode:
-        by_name = {mode.name: mode for mode in reversed(self.modes)}
-        if name not in by_name:
-            names = listed([mode.name for mode in self.modes])
-            raise SolidgearError(f"no mode is {name!r}{nearest(name, by_name)}; there are {names}")
-        return by_name[name]
+    @property
+    def listed_modes(self) -> tuple[TrainMode, ...]:
+        """Modes by frequency."""
+        return self.modes
 
     def framed_tables(self) -> dict[str, Any]:
         """Return all tables of numbers by name, the main one first, and the shapes of the modes."""

@@ -523,7 +523,7 @@ class Points:
         """
         listed = scene.ask.modes
         reduced = body.cache.get(ReducedBeam, lambda: ReducedBeam(body, listed + FURTHER_MODES))
-        shapes = reduced.shapes(as_supports(scene))
+        shapes = reduced.shapes(as_supports(scene), body)
         if self._first is None:
             self._first = NamedShapes.of(modes(body, scene, listed), shapes)
         return self._first.frequencies(shapes, body)
@@ -535,16 +535,16 @@ class ReducedBeam:
     """
 
     def __init__(self, body: Body, count: int):
-        self.body, self.count = body, count
+        self.count = count
         self.part = rubin(body, KEPT_PER_MODE * count)
 
-    def shapes(self, supports: Supports) -> Shapes:
-        """Return the lowest elastic modes on supports."""
+    def shapes(self, supports: Supports, body: Body) -> Shapes:
+        """Return the lowest elastic modes on supports of the body, which keeps this and is not held."""
         part, still = self.part, np.zeros((0, self.part.size))
         motion = np.vstack([still, *(part.ports[name].rows for name in supports.ports)])
         mass = part.mass + motion.T @ supports.masses @ motion
         value, shapes = modes_on_springs(np.diag(part.value), mass, motion.T @ supports.root)
-        rigid = supports.unresisted(self.body).shape[1]
+        rigid = supports.unresisted(body).shape[1]
         elastic = slice(rigid, rigid + self.count)
         return Shapes(np.sqrt(value[elastic]) / (2 * np.pi), part.expand(shapes[:, elastic]))
 

@@ -7,7 +7,7 @@ How a space is searched stands in :mod:`solidgear.variants.optimise.search`.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
@@ -23,6 +23,7 @@ from solidgear.variants.optimise.search import Aim, Trace, search
 from solidgear.variants.optimise.sentences import sentences, solved_all_of
 from solidgear.variants.optimise.wish import limit_of, wish_of
 from solidgear.variants.sweep.design import Design as SweepDesign
+from solidgear.variants.sweep.entries import as_texts
 
 #: of a range: distance from an end of an optimum that is at it
 AT_END = 1e-6
@@ -80,7 +81,7 @@ class Optimum(Outcome, Sheeted):
 
 def optimise(
     scene: Source,
-    vary: str | Iterable[str],
+    vary: str | Iterable[str] | Mapping[str, Any],
     goal: str | Iterable[str],
     keep: str | Iterable[str] = (),
     *,
@@ -99,7 +100,7 @@ def optimise(
     ----------
     scene : path, dict, Scene or Train
         A scene or train: its file, the tables of one, or an object.
-    vary : str or iterable of str
+    vary : str or iterable of str, or mapping of str to values
         ``PATH=LOW:HIGH``, such as ``bearing.B.position=180 mm:240 mm``; ``PATH=A,B,C``, such as
         ``bearing.A.catalogue.designation=7208 B,7210 B,6210``; ``PATH=LOW:HIGH:COUNT`` for values at
         equal distances; whole numbers such as teeth by ``PATH=17:25``.
@@ -154,7 +155,7 @@ def optimise(
     most = MOST * len(goals) if most is None else most
     number("optimise", "most", most, least=2, whole=True)
     design = SweepDesign(
-        names_in(vary), keep_sum=names_in(keep_sum), follow=names_in(follow), search=True
+        as_texts(vary), keep_sum=names_in(keep_sum), follow=names_in(follow), search=True
     )
     document = document_of(scene)
     names = [wish.name for wish in (*goals, *limits)]

@@ -15,6 +15,7 @@ import numpy as np
 
 from solidgear.core import (
     Body,
+    ByName,
     Quantity,
     Scene,
     SceneError,
@@ -84,7 +85,7 @@ class Derivative:
 
 
 @dataclass(frozen=True)
-class OfNumber:
+class OfNumber(ByName[Derivative]):
     """Derivatives of one number, the strongest first."""
 
     plain_names = (
@@ -103,15 +104,14 @@ class OfNumber:
     apart: float | None  #: distance of the value from that on a coarser mesh
     derivatives: tuple[Derivative, ...]
 
-    def __getitem__(self, path: str) -> Derivative:
-        by_path = {derivative.path: derivative for derivative in self.derivatives}
-        if path not in by_path:
-            raise SolidgearError(f"there is no derivative by {path}{nearest(path, [*by_path])}")
-        return by_path[path]
+    @property
+    def by_name(self) -> dict[str, Derivative]:
+        """Derivatives by the paths of entries."""
+        return {derivative.path: derivative for derivative in self.derivatives}
 
 
 @dataclass(frozen=True, repr=False)
-class Sensitivities(Sheeted):
+class Sensitivities(ByName[OfNumber], Sheeted):
     """Derivatives of some numbers by entries of a scene file."""
 
     sheeted: ClassVar[str] = "variants.sensitivity.command:sensitivities_sheet"
@@ -125,11 +125,10 @@ class Sensitivities(Sheeted):
     without: dict[str, str]  #: entries without a derivative, and why
     notes: tuple[str, ...]  #: sentences on bearings held fixed, and on errors of derivatives
 
-    def __getitem__(self, name: str) -> OfNumber:
-        by_name = {number.name: number for number in self.of}
-        if name not in by_name:
-            raise SolidgearError(f"{name} was not asked for; there are {listed([*by_name])}")
-        return by_name[name]
+    @property
+    def by_name(self) -> dict[str, OfNumber]:
+        """Derivatives of each number by its name."""
+        return {number.name: number for number in self.of}
 
     def as_dict(self) -> dict[str, Any]:
         """Plain data in SI."""

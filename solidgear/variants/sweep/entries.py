@@ -24,7 +24,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from solidgear.core import DIMENSIONS, SceneError, SolidgearError, near, nearest
-from solidgear.core.errors import did_you_mean
+from solidgear.core.errors import did_you_mean, names_in
 from solidgear.core.scene.paths import (
     Keys,
     Tables,
@@ -136,6 +136,29 @@ def assignment(text: str, form: str) -> tuple[str, str]:
     if not equals or not path.strip() or not values.strip():
         raise SolidgearError(f"`vary` {text}: write {form}")
     return path.strip(), values
+
+
+def as_texts(vary: str | Iterable[str] | Mapping[str, Any]) -> tuple[str, ...]:
+    """Return ``PATH=VALUES`` texts as they are, or those of values by their paths.
+
+    Examples
+    --------
+    >>> as_texts({"material.E": np.linspace(2.0e11, 2.1e11, 2), "bearing.A.position": "10 mm:20 mm:3"})
+    ('material.E=200000000000.0,210000000000.0', 'bearing.A.position=10 mm:20 mm:3')
+    """
+    if not isinstance(vary, Mapping):
+        return tuple(names_in(vary))
+    return tuple(f"{path}={_as_list(path, values)}" for path, values in vary.items())
+
+
+def _as_list(path: str, values: Any) -> str:
+    """Return the values of an entry as the text of a list; a text is one already."""
+    if isinstance(values, str):
+        return values
+    each = np.atleast_1d(values).tolist()
+    if any(isinstance(value, list) or "," in str(value) for value in each):
+        raise SolidgearError(f"`vary` {path}: give a list of numbers, or of texts without commas")
+    return ",".join(map(str, each))
 
 
 #: forms of the values of a sweep, and of a search

@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import os
 import tempfile
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 from pathlib import Path
 from typing import Any
 
 from solidgear.core import Source
 from solidgear.core.errors import names_in
 from solidgear.variants.sweep.design import Design
+from solidgear.variants.sweep.entries import as_texts
 from solidgear.variants.sweep.file_task import Swept, run
 from solidgear.variants.sweep.shaft_task import task_of
 
 
 def sweep(
     source: Source,
-    vary: str | Iterable[str] = (),
+    vary: str | Iterable[str] | Mapping[str, Any] = (),
     *,
     sample: int | None = None,
     seed: int = 0,
@@ -38,8 +39,8 @@ def sweep(
     ----------
     source : path, dict, Scene or Train
         A scene or train: its file, the tables of one, or an object.
-    vary : str or iterable of str
-        ``PATH=VALUES``: any number or word of the file, such as
+    vary : str or iterable of str, or mapping of str to values
+        ``PATH=VALUES``, or values by their paths, numbers in SI: any number or word of the file, such as
         ``segment.neck.diameter=30 mm:40 mm:5``; of a train also of the scene of a shaft, such as
         ``pinion.bearing.2.position=140 mm:160 mm:5``. Every rule of the file applies.
     sample, seed : int
@@ -99,7 +100,7 @@ def sweep(
     >>> bool(rows["C_zz"][0] > rows["C_zz"][2])
     True
     """
-    texts = names_in(vary)
+    texts = as_texts(vary)
     variants = None if table is None else Path(table)
     sums, diameters = names_in(keep_sum), names_in(follow)
     design = Design(texts, sample, seed, one_at_a_time, variants, sums, diameters)

@@ -5,18 +5,19 @@ from __future__ import annotations
 import dataclasses
 import time
 from collections import Counter
-from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, KeysView, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.core import Sheeted, SolidgearError, listed, nearest, pinned, show
+from solidgear.core import Sheeted, SolidgearError, nearest, pinned, show
 from solidgear.core.errors import names_in
 from solidgear.core.machine.threads import usable_cores
 from solidgear.core.machine.version import VERSION
 from solidgear.core.models.limits import number
+from solidgear.core.named import no_such
 from solidgear.variants.sweep.curves import Curves, chartable, curves_of
 from solidgear.variants.sweep.error_curves import ErrorCurves, error_curves
 from solidgear.variants.sweep.file_variants import FileVariants
@@ -156,13 +157,27 @@ class Swept(Sheeted):
 
     def __getitem__(self, name: str) -> np.ndarray:
         if name not in self.columns:
-            raise SolidgearError(
-                f"a sweep has no column {name!r}{nearest(name, self.columns)}; "
-                f"it has {listed(self.columns)}"
-            )
+            raise no_such(name, self.columns)
         values = self.columns[name]
         texts = any(isinstance(value, str) for value in values)
         return np.array(values, object if texts else float)
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.columns
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self.columns)
+
+    def keys(self) -> KeysView[str]:
+        """Names of the columns: by them it is a mapping of arrays, whose length is that of its rows, as
+        a data frame is.
+        """
+        return self.columns.keys()
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """Values of every row by the names of columns."""
+        return [dict(zip(self.columns, row)) for row in zip(*self.columns.values())]
 
     @property
     def refused(self) -> int:

@@ -111,6 +111,7 @@ class SceneTask(FileTask):
             scene.with_changes(ask=scene.ask.with_changes(modes=self.n)),
             tol,
             before=self._last.get(key),
+            guarded=False,  # rows have no column of sentences
         )
         self._last.clear()
         self._last[key] = shaft.settled
