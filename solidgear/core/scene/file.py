@@ -109,8 +109,9 @@ class SceneFile(Model):
     name: str | None = None
     #: where the numbers come from
     source: str = ""
-    #: how seats and surfaces follow what they carry, unless their tables say otherwise
-    attachment: Attachment = "average"
+    #: how seats and surfaces follow what they carry, unless their tables say otherwise; without it by
+    #: their means, and held seats as rigid pieces
+    attachment: Attachment | None = None
     #: material of segments without one: a name, or E, nu and density
     material: Annotated[Material, BeforeValidator(by_name), Written(Material | MaterialName)]
     #: file of a list of bearings (CSV) that designations are looked up in first

@@ -159,7 +159,9 @@ def _bearing(scene: Scene, bearing: Bearing) -> Table:
     words = ["name", "y", "seat_width", "matrix", "catalogue", "housing", "hold", "face", "patch"]
     if bearing.face is not None:  # always a section
         words.append("attachment")
-    return table_of(bearing, leave_out=(*words, *table)) | table
+    # a held seat is rigid where nothing is written, in whatever way its file attaches others
+    write = ("attachment",) if bearing.hold is not None else ()
+    return table_of(bearing, leave_out=(*words, *table), write=write) | table
 
 
 def _port(scene: Scene, port: Port) -> Table:
