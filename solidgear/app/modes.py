@@ -96,6 +96,7 @@ def modes(
         above = [mode for mode in whole.modes if mode.name not in mode_set.names]
         evidence = less_bars(mode_set.evidence, bars, above)
         bars = {name: bar for name, bar in bars.items() if name in mode_set.names}
+        elastic = [str(mode.name) for mode in mode_set.modes if mode.frequency_hz > 0]
         judged = Judged(
             loaded,
             body,
@@ -105,7 +106,7 @@ def modes(
             [
                 *cautions(loaded, body),
                 *cut_short(mode_set.modes, asked, highest_hz, option="-n"),
-                *spin_caution(loaded, body, mode_set.modes, bars, turns),
+                *spin_caution(loaded, {name: bars.get(name) for name in elastic}, turns),
             ],
             open_ranges(loaded),
         )
