@@ -9,7 +9,7 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.body import as_supports
-from solidgear.core.judge.at_rest import moved_words, spin_caution
+from solidgear.core.judge.at_rest import moved_beyond, spin_caution
 from solidgear.core.scene import Bearing, Material, PointMass, Scene
 from solidgear.core.solve.spin import (
     Whirl,
@@ -181,20 +181,20 @@ def test_what_spin_moves_more_than_a_bar_is_told():
         "bending 2": Whirl(-0.002, 0.002, False),
         "torsion 1": Whirl(0.0, 0.0, False),
     }
-    assert moved_words(moves, {"bending 1": 0.07, "bending 2": 0.01}, 0.05, "at 1 rpm") == []
-    (said,) = moved_words(moves, {"bending 1": 0.01}, 0.05, "at 3000 rpm")
-    assert said == (
+    turning = 3000 * 2 * pi / 60
+    assert moved_beyond(moves, {"bending 1": 0.07, "bending 2": 0.01}, 0.05, turning) is None
+    assert moved_beyond(moves, {"bending 1": 0.01}, 0.05, turning).sentence == (
         "natural frequencies are those at rest; at 3000 rpm spin moves bending 1 by -5 % and +6 %"
     )
     # a narrow bar makes no trifle worth a word
     trifle = {"bending 1": Whirl(-4.8e-7, 4.8e-7, False)}
-    assert moved_words(trifle, {"bending 1": 1e-9}, 0.05, "at 3000 rpm") == []
+    assert moved_beyond(trifle, {"bending 1": 1e-9}, 0.05, turning) is None
 
 
 @pytest.mark.parametrize(("share", "guess"), [(0.1, False), (0.5, True)])
 def test_first_order_is_a_guess_where_its_square_is_beyond_the_tolerance(share, guess):
     waves = {"ovalising n=2 1": Whirl(-share, share, True)}
-    (said,) = moved_words(waves, {}, 0.05, "at 3000 rpm")
+    said = moved_beyond(waves, {}, 0.05, 300.0).sentence
     assert f"{100 * share:.0f} % up and down (first order" in said
     assert ("no more than a guess" in said) == guess
 
@@ -235,10 +235,37 @@ def test_spin_of_a_keyed_shaft_is_that_of_its_round_part():
     assert "bending 1 by -6.5 % and +6.4 %" in plain
 
 
-def test_a_body_without_an_axis_takes_no_speed():
-    block = sg.load(Path(__file__).parent / "found/parts/clamped_foot.toml")
-    with pytest.raises(sg.SolidgearError, match="clamped_foot has no axis"):
-        spin_caution(block, {"mode 1": None}, 10.0)
+def test_a_body_without_an_axis_takes_no_speed(run):
+    block = Path(__file__).parent / "found/parts/clamped_foot.toml"
+    code, _, err = run("modes", block, "--speed", "100 rpm")
+    assert code != 0 and "clamped_foot has no axis that it could turn about" in err
+
+
+def test_a_check_says_that_frequencies_are_those_at_rest():
+    assert any(MOVED in text for text in sg.check(DISC).cautions)
+
+
+@pytest.mark.parametrize(
+    "command",
+    [
+        ("answer",),
+        ("sensitivities", "-f", "timoshenko", "--by", "material.E"),
+        ("sweep", "-f", "timoshenko", "--vary", "segment.shaft.length=200 mm,210 mm"),
+        ("sweep", "-f", "timoshenko", "--vary", "bearing.front.scale=0.5,1"),
+        ("optimise", "-f", "timoshenko", "--vary", "segment.shaft.diameter=40 mm,41 mm")
+        + ("--goal", "max bending 1"),
+        ("sheet", "--language", "de"),
+    ],
+    ids=lambda words: " ".join(words[:1] + words[-1:]),
+)
+def test_every_command_says_that_frequencies_are_those_at_rest(command, run, tmp_path):
+    out = {"sweep": tmp_path / "rows.csv", "sheet": tmp_path / "sheet.html"}.get(command[0])
+    written = ("--json",) if out is None else ("--out", out)
+    code, shown, err = run(command[0], DISC, *command[1:], *written)
+    said = " ".join((shown + err).split())
+    assert code == 0
+    german = "bei 12000 /min verschiebt die Drehung"
+    assert said.count(german if command[0] == "sheet" else MOVED) == 1
 
 
 def test_a_train_tells_spin_at_its_fastest_operating_point():

@@ -20,11 +20,12 @@ from solidgear.core import (
     bars_of_modes,
     listed,
     show,
+    spin_caution,
+    without_axis,
 )
 from solidgear.core import modes as solve
 from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.errors import NoBounds
-from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bounded import NOTHING_BEYOND
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.hidden import complete_list, less_bars
@@ -75,6 +76,10 @@ def modes(
     if n is not None and not 1 <= n <= MOST_MODES:
         raise SolidgearError(f"-n {show(n)}: give 1 to {MOST_MODES} modes")
     loaded = load(scene, case)
+    if turns and without_axis(loaded):
+        raise SolidgearError(
+            f"--speed: {loaded.name} has no axis that it could turn about; leave it out"
+        )
     asked = loaded.ask.modes if n is None else n
     highest_hz = max_frequency or loaded.ask.max_frequency
 

@@ -55,10 +55,12 @@ NOT_IN_COMPARISONS = (
     "rigid_seats",
     "memory",
     "renderer",
+    "spin",
 )
 #: guards that compare beams and lumped models with a light solid
 COMPARES = ("beam_against_solid", "lumped_against_solid")
-#: guards on other models than a body, or on the machine
+#: guards on other models than a body, on the machine, or on what commands say beside the frequencies
+#: that they show
 NOT_HEARD_ALONE = (
     "rigid_seats",
     "memory",
@@ -67,6 +69,7 @@ NOT_HEARD_ALONE = (
     "lumped_against_solid",
     "frequency_range",
     "doubtful_data",
+    "spin",
 )
 #: guards on the mesh of one solid
 OF_A_MESH = (

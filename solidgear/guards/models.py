@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core import BEAM, COMPLIANCE, LADDER, SolidgearError, listed
+from solidgear.core import BEAM, COMPLIANCE, LADDER, SolidgearError, listed, spin_caution
 from solidgear.core.judge import deviations
 from solidgear.core.judge.deviations import TIES
 from solidgear.core.judge.quantities import in_words
@@ -268,6 +268,12 @@ def ovalising(probe: Probe) -> Notices:
             "to 25 % too high in a thin wall, 24 cells 2.3 %, 32 cells 0.9 %; use --set "
             f"around={needed}",
         )
+
+
+def spin(probe: Probe) -> Notices:
+    """The speed that a file states moves natural frequencies, which are those at rest."""
+    for sentence in spin_caution(probe.whole):
+        yield Notice("caution", (), sentence)
 
 
 #: cells around of the 3D solid by default

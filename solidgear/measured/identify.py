@@ -121,6 +121,7 @@ class Identification(Sheeted):
         "rms_left_out",
         "predicted",
         "sentences",
+        "cautions",
     )
     kind = "identification"
 
@@ -139,6 +140,7 @@ class Identification(Sheeted):
     likeness: Likeness  #: whether the resonances can be those of this part
     remarks: tuple[str, ...] = ()  #: on how the file of resonances was read
     alike: tuple[tuple[float, ...], ...] = ()  #: other values of all entries, SI, that fit as well
+    cautions: tuple[str, ...] = ()  #: sentences on what the computed frequencies leave out
 
     def __getitem__(self, path: str) -> Identified:
         return next(entry for entry in self.entries if entry.path == path)
@@ -465,6 +467,7 @@ class _Search:
             likeness=fit.likeness,
             remarks=self.measured.remarks,
             alike=equivalent,
+            cautions=computed.cautions,
         )
 
     def _nearer(self, fit: Fit) -> np.ndarray:

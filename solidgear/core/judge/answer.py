@@ -20,6 +20,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError, nearest, show
 from solidgear.core.frames import DOF_NAMES
+from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.quantities import canonical_name, judged
 from solidgear.core.judge.question import FamilySolver
 from solidgear.core.judge.refinement import Progress, Refinement, refine
@@ -60,7 +61,7 @@ class Answered(Displayed):
     shown: ClassVar[str] = "answered"
     plain_names = (
         *("scene", "tolerance", "values", "steps", "reached"),
-        *(("model", "rung"), "missing", "seconds"),
+        *(("model", "rung"), "missing", "cautions", "seconds"),
     )
 
     scene: str
@@ -71,6 +72,7 @@ class Answered(Displayed):
     rung: str  #: that the values come from
     #: quantities that do not exist for this scene, such as the compliance of a free motion
     missing: tuple[Quantity, ...]
+    cautions: tuple[str, ...]  #: sentences on what the numbers leave out
     seconds: float
 
     def __getitem__(self, quantity: str) -> float:
@@ -146,6 +148,7 @@ def answer(
         reached=bool(values) and all(v.bar <= tol for v in values),
         rung=solver.refinement.model.name,
         missing=tuple(q for q in wanted if q not in existing),
+        cautions=tuple(spin_caution(scene, {v.quantity: v.bar for v in values})),
         seconds=time.perf_counter() - start,
     )
 

@@ -9,6 +9,7 @@ on a light harmonic solid of the plain part, whichever model a number comes from
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from math import isfinite, pi
 
 from solidgear.core.body import as_supports
@@ -17,7 +18,7 @@ from solidgear.core.errors import SolidgearError, listed
 from solidgear.core.judge.solving import ENOUGH
 from solidgear.core.ladder import build
 from solidgear.core.ladder.meshes import HARMONIC
-from solidgear.core.quantity import Quantity
+from solidgear.core.quantity import QUANTITIES, Quantity
 from solidgear.core.scene import Scene
 from solidgear.core.scene.ask import MOST_MODES
 from solidgear.core.scene.shaft import turning_speed, without_axis
@@ -29,38 +30,64 @@ MOST_NAMED, WORTH_NAMING = 3, 0.1
 #: relative; nobody minds a smaller change of a frequency, however narrow the error bar is
 LEAST_MOVE = 1e-3
 AT_REST = "natural frequencies are those at rest"
+#: frequencies that studies show, without error bars
+USUAL: Mapping[str, None] = dict.fromkeys(str(q) for q in QUANTITIES if q.is_frequency)
+
+
+@dataclass(frozen=True)
+class Moved:
+    """Modes of a shaft that spin moves by more than their error bars, or else by a tolerance."""
+
+    speed: float  #: rad/s
+    modes: Mapping[str, Whirl]  #: by names, those that it moves the most first
+    tolerance: float  #: relative
+    of: str = ""  #: shaft that has the speed, where there are several
+    how: str = ""  #: end of the sentence, on how it is known
+
+    @property
+    def sentence(self) -> str:
+        """The caution."""
+        of = f" of the {self.of}" if self.of else ""
+        words = (f"{n} by {_move_words(whirl, self.tolerance)}" for n, whirl in self.modes.items())
+        modes_text = listed(words, most=MOST_NAMED)
+        return f"{AT_REST}; {at_speed(self.speed)}{of} spin moves {modes_text}{self.how}"
+
+
+def at_speed(speed: float) -> str:
+    """Return a speed, rad/s, in words."""
+    return f"at {60 * speed / (2 * pi):.6g} rpm"
 
 
 def spin_caution(
-    scene: Scene, bars: Mapping[str, float | None], speed: float | None = None
+    scene: Scene, bars: Mapping[str, float | None] = USUAL, speed: float | None = None
 ) -> list[str]:
     """Return a sentence on those natural frequencies of a shaft, by names, that spin moves, or none;
-    error bars are relative, None where there is none, and names of other quantities are left out.
-    The speed (rad/s) is that of the scene by default; one given for a body without an axis is refused.
+    parameters are as of :func:`spin_moved`.
     """
-    if speed and without_axis(scene):
-        raise SolidgearError(
-            f"speed: {scene.name} has no axis that it could turn about; leave it out"
-        )
+    try:
+        moved = spin_moved(scene, bars, speed)
+    except (SolidgearError, ArithmeticError, MemoryError) as error:
+        reason = str(error) or "not enough memory"
+        return [f"{AT_REST}; how far spin moves them is not known: {reason}"]
+    return [] if moved is None else [moved.sentence]
+
+
+def spin_moved(
+    scene: Scene, bars: Mapping[str, float | None] = USUAL, speed: float | None = None
+) -> Moved | None:
+    """Return those natural frequencies of a shaft, by names, that spin moves, or None; error bars are
+    relative, None where there is none, and names of other quantities are left out. The speed (rad/s)
+    is that of the scene by default. A body without an axis does not turn.
+    """
     speed = speed or turning_speed(scene)
     bars = {name: bar for name, bar in bars.items() if Quantity(name).is_frequency}
     if not speed or not bars or without_axis(scene):
-        return []
-    turns = speed / (2 * pi)
-    at_speed = f"at {60 * turns:.6g} rpm"
-    try:
-        moves = _moves(scene, len(bars), turns)
-    except (SolidgearError, ArithmeticError, MemoryError) as error:
-        reason = str(error) or "not enough memory"
-        return [f"{AT_REST}; how far spin moves them {at_speed} is not known: {reason}"]
+        return None
+    moves = _moves(scene, len(bars), speed / (2 * pi))
     by_name = {name: moves.get(_on_plain_part(scene, name)) for name in bars}
-    return moved_words(
-        {name: whirl for name, whirl in by_name.items() if whirl is not None},
-        bars,
-        scene.ask.tolerance,
-        at_speed,
-        "" if scene.plain is scene else ", by the round part without cuts",
-    )
+    how = "" if scene.plain is scene else ", by the round part without cuts"
+    moves = {name: whirl for name, whirl in by_name.items() if whirl is not None}
+    return moved_beyond(moves, bars, scene.ask.tolerance, speed, how=how)
 
 
 def _moves(scene: Scene, count: int, turns: float) -> dict[str, Whirl]:
@@ -81,15 +108,17 @@ def _on_plain_part(scene: Scene, name: str) -> str:
     return f"{BENDING} {number}"
 
 
-def moved_words(
+def moved_beyond(
     moves: Mapping[str, Whirl],
     bars: Mapping[str, float | None],
     tolerance: float,
-    at_speed: str,
+    speed: float,
+    *,
+    of: str = "",
     how: str = "",
-) -> list[str]:
-    """Return a sentence on modes by what spin does to them, those that it moves the most first; none
-    where their error bars, or else a tolerance, are wider, or nobody minds it.
+) -> Moved | None:
+    """Return the modes that spin moves, by what it does to them; None where their error bars, or else
+    a tolerance, are wider, or nobody minds it.
     """
     moved = {}
     for name, whirl in moves.items():
@@ -98,12 +127,11 @@ def moved_words(
         if _size(whirl) > max(limit, LEAST_MOVE):
             moved[name] = whirl
     if not moved:
-        return []
+        return None
     largest = max(map(_size, moved.values()))
     most = sorted(moved, key=lambda name: _size(moved[name]), reverse=True)
-    most = [name for name in most if _size(moved[name]) >= WORTH_NAMING * largest]
-    words = (f"{name} by {_move_words(moved[name], tolerance)}" for name in most)
-    return [f"{AT_REST}; {at_speed} spin moves {listed(words, most=MOST_NAMED)}{how}"]
+    modes_moved = {n: moved[n] for n in most if _size(moved[n]) >= WORTH_NAMING * largest}
+    return Moved(speed, modes_moved, tolerance, of, how)
 
 
 def _size(whirl: Whirl) -> float:

@@ -68,6 +68,7 @@ def turning_speed(scene: Any) -> float | None:
 
     Examples
     --------
+    >>> import solidgear as sg
     >>> turning_speed(sg.load("geometry/shaft_stepped.toml")) is None
     True
     """

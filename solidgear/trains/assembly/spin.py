@@ -11,12 +11,14 @@ from collections.abc import Mapping
 import numpy as np
 
 from solidgear.core import LADDER, System, as_supports, listed
-from solidgear.core.judge.at_rest import moved_words
-from solidgear.core.judge.solving import ENOUGH
+from solidgear.core.judge.at_rest import Moved, moved_beyond
 from solidgear.core.solve.spin import Whirl, couplings, whirled
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.meshes import mesh_bars
 from solidgear.trains.modes.naming import mode_names
+
+#: modes beyond those shown that take part in their whirl: three digits, as of a shaft
+BEYOND = 10
 
 
 def fastest_turns(assembly: Assembly) -> float:
@@ -28,23 +30,23 @@ def fastest_turns(assembly: Assembly) -> float:
     return max(map(abs, speeds), default=0.0) / (2 * np.pi)
 
 
-def spin_cautions(
+def spin_moved(
     assembly: Assembly,
     system: System,
     models: Mapping[str, str],
     limit: float,
     turns: float | None = None,
-) -> list[str]:
-    """Return a sentence on the modes up to a limit, Hz, that spin moves by more than the error bar
-    of the meshes, or the tolerance of the file; none without a speed. Turns of the engine's
-    shaft in a second are by default those at the fastest operating point.
+) -> Moved | None:
+    """Return the modes up to a limit, Hz, that spin moves by more than the error bar of the meshes, or
+    the tolerance of the file; None without a speed. Turns of the engine's shaft in a second are by
+    default those at the fastest operating point.
     """
     train, turns = assembly.train, turns or fastest_turns(assembly)
     count = int((system.elastic[0] <= 2 * np.pi * limit).sum())
     if not turns or not count:
-        return []
+        return None
     # modes beyond those shown take part in their whirl
-    modes = system.modes(count + ENOUGH, bounded=count)
+    modes = system.modes(count + BEYOND, bounded=count)
     hz, shapes = modes.frequency_hz[modes.rigid :], modes.shapes[:, modes.rigid :]
     of_shafts, left_out = [], []
     for side, model in models.items():
@@ -57,15 +59,15 @@ def spin_cautions(
         coupling = couplings(body, as_supports(assembly.scenes[side]), mode_fields)
         of_shafts.append(train.turns[side] * turns * coupling)
     if not of_shafts:
-        return []
+        return None
     moved = whirled(hz, _added_up(np.array(of_shafts)), 1.0) / hz - 1
     names = mode_names(assembly, system, modes)[modes.rigid :]
     bars = mesh_bars(assembly, system, models, count)
     bars_by_name = {} if bars is None else dict(zip(names, map(float, bars)))
-    speed_text = f"at {60 * turns:.6g} rpm of the {train.reference}"
     moves = {name: Whirl(float(way), float(way), False) for name, way in zip(names, moved[:count])}
     how = f", without {listed(left_out)}, no elastic body" if left_out else ""
-    return moved_words(moves, bars_by_name, train.ask.tolerance, speed_text, how)
+    speed, tolerance = 2 * np.pi * turns, train.ask.tolerance
+    return moved_beyond(moves, bars_by_name, tolerance, speed, of=train.reference, how=how)
 
 
 def _added_up(of_shafts: np.ndarray) -> np.ndarray:
