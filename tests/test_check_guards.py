@@ -387,9 +387,7 @@ CASES = {
         scene(port=(0.08 + 0.01 * D, 0.0, 0.08)),
         of=everything(),
     ),
-    "disc at speed": Case(
-        "spin", "at 12000 rpm spin moves bending 1", turning(12000), turning(100)
-    ),
+    "disc at speed": Case("spin", "at 12000 rpm spin moves", turning(12000), turning(100)),
     "tube, n = 2 below bending": Case(
         "ovalising", "which a beam leaves out", tube(0.26, 3), tube(0.4, 3), of=BEAMS, level="avoid"
     ),
