@@ -366,8 +366,6 @@ def _plain_error(entry: Mapping, data: Any) -> SceneError:
 WRITE = {
     "material": 'write material = "steel", or a table with E, nu and density',
     "segment": 'write segment = [{ kind = "cylinder", name = ..., length = ..., diameter = ... }, ...]',
-    "port": 'write port = { name = "gear", at = "SEGMENT.middle", attach_to = "SEGMENT" } with the '
-    "name of a segment: the point where the gear acts",
 }
 
 

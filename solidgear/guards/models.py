@@ -173,7 +173,7 @@ DISC = 0.2
 def disc_head(probe: Probe) -> Notices:
     """Yield notices on a head so short that it bends in itself."""
     parts = probe.parts
-    for port in probe.scene.ports:
+    for port in probe.points:
         middle = (port.lo + port.hi) / 2
         index = next(i for i, (low, high, _) in enumerate(parts) if low <= middle <= high)
         low, high, widest = parts[index]
@@ -218,7 +218,7 @@ def point_beyond_surface(probe: Probe) -> Notices:
     """Yield notices on a lumped point that a solid reaches by extrapolating from its surface, a
     beam along the shaft.
     """
-    for port in probe.scene.ports:
+    for port in probe.points:
         distance = max(port.lo - port.y, port.y - port.hi) / probe.diameter(port.y)
         if distance > BEYOND and port.attachment != "section":
             yield Notice(

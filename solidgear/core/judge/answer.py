@@ -265,7 +265,7 @@ def asked_for(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
                 f"ask: there is no quantity {show(name, 40)}{nearest(name, quantities)}; there are "
                 f"{', '.join(quantities)}"
             )
-        out.append(word)
+        out.append(word if word.points else canonical_name(scene, word))
     return tuple(dict.fromkeys(out))
 
 

@@ -213,8 +213,8 @@ def solve(
     counted twice, up to a frequency in Hz. Errors are those of the builder, the statics and the
     modes.
     """
+    ports = [scene.port.name, *(port.name for port in scene.further_ports)]
     body = build(scene, model, **options)
-    ports = [port.name for port in scene.ports]
     return answer_of_body(body, as_supports(scene), ports, n, max_frequency=max_frequency)
 
 

@@ -80,7 +80,7 @@ def unsettled_tables(scene: Scene) -> Table:
         "mass": [_mass(mass) for mass in scene.masses],
         "feature": [_feature(feature) for feature in scene.features],
         "housing": _housing(scene),
-        "port": [_port(scene, port) for port in scene.ports if not _is_usual(scene, port)],
+        "port": [_port(scene, port) for port in scene.ports],
         "load": [_load(load) for load in scene.loads] or entry_of(scene.load),
         "case": [table_of(case) for case in scene.cases],
         "lubrication": entry_of(scene.lubrication),
@@ -173,12 +173,6 @@ def _port(scene: Scene, port: Port) -> Table:
         **place,
         **table_of(port, leave_out=("name", "y", "lo", "hi", "patch")),
     }
-
-
-def _is_usual(scene: Scene, port: Port) -> bool:
-    """Return True for the port that a body without an axis has without words."""
-    free = scene.body is not None and scene.body.edges is not None
-    return free and port.patch is None
 
 
 def _on_patch(body: Any, patch: Patch) -> Table:
