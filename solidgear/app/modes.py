@@ -111,6 +111,7 @@ def modes(
             [
                 *cautions(loaded, body),
                 *cut_short(mode_set.modes, asked, highest_hz, option="-n"),
+                *(mixture.sentence for mixture in mixtures(mode_set)),
                 *spin_caution(loaded, {name: bars.get(name) for name in elastic}, turns),
             ],
             open_ranges(loaded),
@@ -154,7 +155,6 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
         shapes = sum(m.multiplicity for m in modes.modes)
         notes.insert(0, f"{shapes} shapes up to {modes.frequency_hz[-1]:.6g} Hz.")
     notes += map(caution, split_apart(modes, bars))
-    notes += [caution(f"{mixture.sentence}.") for mixture in mixtures(modes)]
     if evidence["error"] > 1e-6:
         notes.append(
             caution(

@@ -17,6 +17,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from solidgear.core.body.mode_names import ModeName
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError, nearest, show
 from solidgear.core.frames import DOF_NAMES
@@ -254,7 +255,7 @@ def asked_for(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
                     f"ask: {name}: a frequency belongs to the whole shaft; ask for {word}"
                 )
             word = canonical_name(scene, requested)
-        elif requested.points or word not in (*QUANTITIES, *ACROSS):
+        elif requested.points or not (word in (*QUANTITIES, *ACROSS) or _is_mode(word)):
             quantities = (*QUANTITIES, *ACROSS, *WORDS, "f1")
             if place is not None:
                 raise SolidgearError(
@@ -267,6 +268,12 @@ def asked_for(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
             )
         out.append(word if word.points else canonical_name(scene, word))
     return tuple(dict.fromkeys(out))
+
+
+def _is_mode(name: Quantity) -> bool:
+    """Return True for the name of a mode of bending, stretch or torsion, whatever its number."""
+    mode = ModeName(name)
+    return mode.family in FAMILIES and bool(mode.number) and not mode.rigid and not mode.plane
 
 
 def _lowest(scene: Scene, place: int) -> Quantity:

@@ -97,9 +97,17 @@ class Statics:
         return values | measure(None, None, self.further, self.coupled, ACROSS)
 
 
-def numbers(statics: Statics | None, modes: ModeSet | None) -> Numbers:
-    """Return all numbers of statics and modes, either of which may not have been solved."""
+def numbers(
+    statics: Statics | None, modes: ModeSet | None, wanted: Iterable[Quantity] = ()
+) -> Numbers:
+    """Return all numbers of statics and modes, either of which may not have been solved, with `wanted`
+    frequencies that are no usual ones.
+    """
     values = measure(None, modes) if statics is None else statics.values(modes)
+    for name in wanted:
+        mode = modes.named(name) if modes is not None else None
+        if mode is not None:
+            values.setdefault(name, mode.frequency_hz)
     return Numbers(values, _solver_errors(statics, modes, values))
 
 
