@@ -124,7 +124,7 @@ class Bearing(Placed):
         and needle rollers float, and all others locate.
     hold : {'clamped', 'pinned'} or None
         In place of a stiffness: no motion, or rotations only, of the seat as one rigid piece; with
-        another `attachment` of its mean alone.
+        another `attachment`, and at a `face`, of its mean alone.
     face : {'start', 'end'} or None
         The end face whose middle it holds, as a section; the seat is then the rim beside that face.
     patch : Patch or None
