@@ -167,6 +167,12 @@ def disc(share: float) -> Scene:
     return scene(((length, 0.12), (0.3 - length, D)))
 
 
+def turning(rpm: float) -> Scene:
+    """A shaft with a disc, whose lubrication gives the speed."""
+    oil = sg.Lubrication(viscosity=2e-5, cleanliness="normal", speed=f"{rpm} rpm")
+    return scene(((0.02, 4 * D), (0.28, D))).with_changes(lubrication=oil)
+
+
 def joint(share: float) -> Scene:
     """A hollow head that shares a ring with the face of the shaft."""
     return scene(((0.08, 0.12, D * (1 - share)), (0.22, D)))
@@ -381,6 +387,7 @@ CASES = {
         scene(port=(0.08 + 0.01 * D, 0.0, 0.08)),
         of=everything(),
     ),
+    "disc at speed": Case("spin", "at 12000 rpm spin moves", turning(12000), turning(100)),
     "tube, n = 2 below bending": Case(
         "ovalising", "which a beam leaves out", tube(0.26, 3), tube(0.4, 3), of=BEAMS, level="avoid"
     ),

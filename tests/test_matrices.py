@@ -499,3 +499,14 @@ def test_the_command_refuses_in_a_sentence_and_writes_nothing(tmp_path, monkeypa
     if said is not None:
         assert said in str(done.exception), str(done.exception)
     assert [path.name for path in tmp_path.iterdir()] == ["none"]
+
+
+def test_a_mass_on_a_bearing_belongs_to_the_free_shaft():
+    scene = sg.load(Path(__file__).parent / "found/spin/mass_on_bearing.toml")
+    matrices = sg.port_matrices(scene)
+    lift = np.zeros(len(matrices.mass))
+    lift[2::6] = 1.0  # every port by one metre along z
+    shaft = scene.with_changes(masses=())
+    heavy, light = lift @ matrices.mass @ lift, lift @ sg.port_matrices(shaft).mass @ lift
+    assert heavy - light == pytest.approx(2.0, rel=1e-9)
+    assert np.abs(matrices.stiffness @ lift).max() < 1e-6 * np.abs(matrices.stiffness).max()

@@ -1,5 +1,7 @@
 """Modes whose names are a toss-up: torsion and bending beside a flat on one side."""
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
@@ -45,6 +47,17 @@ def test_torsion_and_bending_beside_a_flat(stepped):
     assert one.sentence.startswith(f"{one.name} and {one.partner} (+")
     first, other = (found.named(n).frequency_hz for n in (one.name, one.partner))
     assert one.gap == pytest.approx(other / first - 1)
+
+
+def test_a_mixture_whose_partner_is_not_near_says_its_parts(stepped):
+    flat = Flat(name="f", segment="neck", y=0.10917, length=0.03987, depth=0.005875)
+    found = found_with(stepped, flat)
+    (pair,) = mixtures(found)
+    first = tuple(mode for mode in found.modes if mode.name != pair.partner)
+    (alone,) = mixtures(replace(found, modes=first))
+    assert (alone.name, alone.partner) == (pair.name, "")
+    assert alone.share + alone.rest == pytest.approx(1.0, abs=0.05)  # next to nothing moves along
+    assert alone.sentence.startswith(f"{alone.name} is {100 * alone.rest:.0f} % {alone.second}: ")
 
 
 def test_a_shaft_of_revolution_has_none(stepped):

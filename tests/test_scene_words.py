@@ -143,7 +143,7 @@ def scene_with(**things):
             'bearings[1] "A".catalogue',
         ),
         (lambda: sg.Scene.from_parts([]), "segments: a scene needs at least one segment"),
-        (lambda: sg.Scene.from_dict({"segment": {}, "material": "steel"}), "2 problems in scene"),
+        (lambda: sg.Scene.from_dict({"segment": {}}), "2 problems in scene"),
     ],
 )
 def test_errors_from_python_speak_of_its_arguments(make, error):

@@ -51,6 +51,14 @@ class Mutation:
 
 MUTATIONS = (
     Mutation(
+        "only the mean of a held seat is held",
+        "solidgear/core/scene/stations.py",
+        "usual_attachment",
+        'return "average" if bearing.get("hold") is None else "rigid"',
+        'return "average"',
+        "tests/test_holds.py::test_the_clamped_foot_of_a_block_does_not_deform",
+    ),
+    Mutation(
         "a narrow seat is meshed as a wide one",
         "solidgear/core/meshing/grading.py",
         "Grading.seat_layers",

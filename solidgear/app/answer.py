@@ -110,6 +110,7 @@ def answer_sheet(
     """
     data = answered.as_dict() | {"open": plain(open_)}
     closing: list[str | Table] = [*sentences(answered), *_of_round_part(scene, answered)]
+    closing += map(caution, answered.cautions)
     if isinstance(places, str):
         if places:
             data["where"] = {"error": places}
@@ -130,6 +131,7 @@ def answer_sheet(
         lead="",
         tables=[_values(answered, units, open_), _path(answered)],
         data=data,
+        cautions=answered.cautions,
         terminal=Terminal(heading=[], closing=closing),
     )
 

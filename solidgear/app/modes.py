@@ -17,10 +17,11 @@ from solidgear.core import (
     SolidgearError,
     bars_of_modes,
     listed,
+    spin_caution,
+    without_axis,
 )
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.asked import checked_number, modes_of_scene
-from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bounded import NOTHING_BEYOND
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.hidden import less_bars
@@ -70,6 +71,10 @@ def modes(
         raise SolidgearError(f"--max-frequency {max_frequency:g}: must be greater than zero, in Hz")
     asked = None if n is None else checked_number(n)
     loaded = load(scene, case)
+    if turns and without_axis(loaded):
+        raise SolidgearError(
+            f"--speed: {loaded.name} has no axis that it could turn about; leave it out"
+        )
     asked = asked or loaded.ask.modes
     highest_hz = max_frequency or loaded.ask.max_frequency
 
@@ -89,6 +94,7 @@ def modes(
         above = [mode for mode in whole.modes if mode.name not in mode_set.names]
         evidence = less_bars(mode_set.evidence, bars, above)
         bars = {name: bar for name, bar in bars.items() if name in mode_set.names}
+        elastic = [str(mode.name) for mode in mode_set.modes if mode.frequency_hz > 0]
         judged = Judged(
             loaded,
             body,
@@ -98,7 +104,8 @@ def modes(
             [
                 *cautions(loaded, body),
                 *cut_short(mode_set.modes, asked, highest_hz, option="-n"),
-                *spin_caution(loaded, body, mode_set.modes, bars, turns),
+                *(mixture.sentence for mixture in mixtures(mode_set)),
+                *spin_caution(loaded, {name: bars.get(name) for name in elastic}, turns),
             ],
             open_ranges(loaded),
         )
@@ -141,7 +148,6 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
         shapes = sum(m.multiplicity for m in modes.modes)
         notes.insert(0, f"{shapes} shapes up to {modes.frequency_hz[-1]:.6g} Hz.")
     notes += map(caution, split_apart(modes, bars))
-    notes += [caution(f"{mixture.sentence}.") for mixture in mixtures(modes)]
     if evidence["error"] > 1e-6:
         notes.append(
             caution(

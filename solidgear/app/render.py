@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core import LADDER, SolidgearError
+from solidgear.core import LADDER, SolidgearError, spin_caution
 from solidgear.core import modes as solve
 from solidgear.show.command import command
 from solidgear.show.folder import prepare
@@ -52,6 +52,9 @@ def render(
         body = chosen.body(loaded)
         mode_set = solve(body, loaded, max(loaded.ask.modes, 10))
         drawn.append(Drawn(body, mode_set, LADDER[chosen.name].title))
+    shown = [m.name for m in drawn[0].modes.modes if turn is not None or m.name == mode]
+    for sentence in spin_caution(loaded, dict.fromkeys(shown)):
+        print(f"caution: {sentence}", file=sys.stderr)
     if turn is None:
         print(render_mode(drawn[0], mode, out))
         return

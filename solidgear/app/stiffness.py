@@ -88,7 +88,7 @@ def _points(scene: Scene, port: str | None) -> tuple[str, ...]:
     """Return the names in ``--port``; by default the main point."""
     points = [point.name for point in scene.ports]
     if port is None:
-        return (points[0],)
+        return (scene.port.name,)
     # a name may have a comma of its own
     names = [port] if port in points else [part.strip() for part in port.split(",")]
     for name in names:

@@ -41,6 +41,7 @@ from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.meter import Meter
 from solidgear.core.machine.processes import give_back
+from solidgear.core.scene.rules import without_point
 from solidgear.guards.check import notices
 from solidgear.guards.models import cells_around
 from solidgear.show.remarks import may_be_open
@@ -279,6 +280,8 @@ def _with_axis(source: Source) -> Scene:
             "compare: a body without an axis has one model, the 3D solid; run solidgear modes and "
             "stiffness"
         )
+    if not scene.ports:
+        raise without_point(scene)
     return scene
 
 

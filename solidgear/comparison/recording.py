@@ -19,8 +19,8 @@ from solidgear.core import (
     SolidgearError,
     Solution,
     WhereRecord,
+    spin_caution,
 )
-from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
 from solidgear.core.judge.correlation import correlate
@@ -124,7 +124,8 @@ def recorded(scene: Scene, findings: Findings) -> Record:
     out.warnings = _warnings(solutions, guards, out.models)
     if listed := solutions.get(reference or next(reversed(solutions), "")):
         error_bars = {str(q): bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
-        out.warnings += spin_caution(scene, listed.body, listed.modes.modes, error_bars)
+        shown = [str(mode.name) for mode in listed.modes.modes if mode.frequency_hz > 0]
+        out.warnings += spin_caution(scene, {name: error_bars.get(name) for name in shown})
         n = max(scene.ask.modes, ENOUGH)
         out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
     return out

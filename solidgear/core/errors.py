@@ -379,8 +379,6 @@ def _plain_error(entry: Mapping, data: Any) -> SceneError:
 WRITE = {
     "material": 'write material = "steel", or a table with E, nu and density',
     "segment": 'write segment = [{ kind = "cylinder", name = ..., length = ..., diameter = ... }, ...]',
-    "port": "it is the point where the gear acts: add these lines at the end of the file, with the name of "
-    'a segment:\n\n[port]\nname = "gear"\nat = "SEGMENT.middle"\nattach_to = "SEGMENT"',
 }
 
 

@@ -329,6 +329,14 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "{place}: safety against a first crack {safety} is below the {least} of DIN 743.",
         "{place}: Sicherheit gegen Anriss {safety} liegt unter {least} nach DIN 743.",
     ),
+    "caution spin": (
+        "Frequencies are those at rest; at {speed} spin moves {mode} by {down} to {up}.",
+        "Frequenzen gelten im Stillstand; bei {speed} verschiebt die Drehung {mode} um {down} bis {up}.",
+    ),
+    "caution at rest": (
+        "Frequencies are those at rest; how far spin moves them is not known.",
+        "Frequenzen gelten im Stillstand; wie weit die Drehung sie verschiebt, ist nicht bekannt.",
+    ),
     "caution speed": (
         "The {order} meets {mode} at {critical}, {off} from the speed.",
         "Nur {off} neben der Drehzahl: {order} trifft bei {critical} auf {mode}.",

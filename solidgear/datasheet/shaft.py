@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.study import BearingFacts
 from solidgear.core import LADDER, Scene, SolidgearError, load, without_axis
+from solidgear.core.judge.at_rest import spin_moved
 from solidgear.datasheet.assumed import absent_notch, assumed, assumed_at_rest
 from solidgear.datasheet.at_rest import (
     bearing_facts,
@@ -34,6 +35,7 @@ from solidgear.datasheet.facts import (
 )
 from solidgear.datasheet.numbers import Numbers, answered_numbers
 from solidgear.datasheet.result import Datasheet
+from solidgear.datasheet.spin import caution_of_spin
 from solidgear.strength.deflection import at_rest
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
@@ -82,7 +84,7 @@ def shaft_sheet(
         speed=turning,
         assumed=tuple(assumed(scene, numbers.ranges)),
         absent={} if turning else {"speeds": Remark("absent speed")},
-        cautions=tuple(numbers.cautions()),
+        cautions=(*numbers.cautions(), *_at_rest(settled, numbers, turning)),
     )
     if not scene.is_loaded:
         reason = Remark("absent load")
@@ -130,6 +132,16 @@ def _under_load(
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),
         elsewhere=len({*deflected.cautions, *deflected.judge.notes, *stressed.cautions}),
     )
+
+
+def _at_rest(scene: Scene, numbers: Numbers, speed: float | None) -> Iterator[Remark]:
+    """Yield a caution on frequencies of a shaft that turns."""
+    try:
+        moved = spin_moved(scene, {f.mode: f.bar for f in numbers.frequencies}, speed)
+    except SolidgearError:
+        yield Remark("caution at rest")
+        return
+    yield from caution_of_spin(moved)
 
 
 def speed_of(scene: Scene) -> float | None:

@@ -34,6 +34,7 @@ from solidgear.datasheet.facts import (
     Trust,
 )
 from solidgear.datasheet.result import Datasheet
+from solidgear.datasheet.spin import caution_of_spin
 from solidgear.strength.deflection import at_rest
 from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
@@ -85,6 +86,7 @@ def train_sheet(
         ),
         assumed=tuple(_assumed(train)),
         absent={} if speed else {"speeds": Remark("absent train speed")},
+        cautions=tuple(caution_of_spin(modes.spin)),
     )
     if assembly is None or point is None:
         reason = Remark("absent operation")

@@ -55,10 +55,12 @@ NOT_IN_COMPARISONS = (
     "rigid_seats",
     "memory",
     "renderer",
+    "spin",
 )
 #: guards that compare beams and lumped models with a light solid
 COMPARES = ("beam_against_solid", "lumped_against_solid")
-#: guards on other models than a body, or on the machine
+#: guards on other models than a body, on the machine, or on what commands say beside the frequencies
+#: that they show
 NOT_HEARD_ALONE = (
     "rigid_seats",
     "memory",
@@ -67,6 +69,7 @@ NOT_HEARD_ALONE = (
     "lumped_against_solid",
     "frequency_range",
     "doubtful_data",
+    "spin",
 )
 #: guards on the mesh of one solid
 OF_A_MESH = (
@@ -75,6 +78,8 @@ OF_A_MESH = (
     "nearly_incompressible",
     "uniform_at_shoulder",
 )
+#: guards on what is lumped
+OF_A_POINT = ("effective_mass", "lumped_against_solid", "frequency_range")
 #: guards on a body without an axis too
 OF_ANY_BODY = ("linear_elements", "nearly_incompressible")
 
@@ -153,7 +158,8 @@ def check_scene(scene: Scene, body: Body, probe: Probe | None = None) -> Check:
         by_guard += [("round_part", notice) for notice in described(scene)]
     by_guard += [(name, n) for name in _guards(scene) for n in _heard(name, probe)]
     records = tuple(record(name, notice, notice.models) for name, notice in by_guard)
-    verdicts = {model: _verdict(model, records) for model in (*beams(), *_solids(scene))}
+    judged = beams() if scene.ports else LADDER.of(BEAM)
+    verdicts = {model: _verdict(model, records) for model in (*judged, *_solids(scene))}
     return Check(scene.name, records, verdicts)
 
 
@@ -327,7 +333,9 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
 
 def _guards(scene: Scene) -> tuple[str, ...]:
     """Return the names of the guards that apply: most speak of the plain part of a shaft."""
-    return OF_ANY_BODY if without_axis(scene) else tuple(GUARDS)
+    if without_axis(scene):
+        return OF_ANY_BODY
+    return tuple(name for name in GUARDS if scene.ports or name not in OF_A_POINT)
 
 
 def _of_a_body(scene: Scene) -> Iterator[Notice]:

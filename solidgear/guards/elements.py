@@ -32,9 +32,9 @@ NARROW, NARROW_POINT = (0.1, 5.0), (0.02, 1.2)
 def narrow_seat(probe: Probe) -> Notices:
     """Yield notices on seats that tie like a line, those of one kind in one sentence."""
     narrow: dict[tuple[float, float], dict[str, float]] = {}
-    for s in probe.scene.stations:
+    for s in probe.seats:
         width = (s.hi - s.lo) / probe.diameter(s.y)
-        rule = NARROW_POINT if s in probe.scene.ports else NARROW
+        rule = NARROW_POINT if s in probe.points else NARROW
         if width < rule[0] and s.attachment != "section":
             narrow.setdefault(rule, {})[s.name] = width
     for (limit, softer), seats in narrow.items():

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core import BEAM, COMPLIANCE, LADDER, SolidgearError, listed
+from solidgear.core import BEAM, COMPLIANCE, LADDER, SolidgearError, listed, spin_caution
 from solidgear.core.judge import deviations
 from solidgear.core.judge.deviations import TIES
 from solidgear.core.judge.quantities import in_words
@@ -173,7 +173,7 @@ DISC = 0.2
 def disc_head(probe: Probe) -> Notices:
     """Yield notices on a head so short that it bends in itself."""
     parts = probe.parts
-    for port in probe.scene.ports:
+    for port in probe.points:
         middle = (port.lo + port.hi) / 2
         index = next(i for i, (low, high, _) in enumerate(parts) if low <= middle <= high)
         low, high, widest = parts[index]
@@ -218,7 +218,7 @@ def point_beyond_surface(probe: Probe) -> Notices:
     """Yield notices on a lumped point that a solid reaches by extrapolating from its surface, a
     beam along the shaft.
     """
-    for port in probe.scene.ports:
+    for port in probe.points:
         distance = max(port.lo - port.y, port.y - port.hi) / probe.diameter(port.y)
         if distance > BEYOND and port.attachment != "section":
             yield Notice(
@@ -268,6 +268,12 @@ def ovalising(probe: Probe) -> Notices:
             "to 25 % too high in a thin wall, 24 cells 2.3 %, 32 cells 0.9 %; use --set "
             f"around={needed}",
         )
+
+
+def spin(probe: Probe) -> Notices:
+    """The speed that a file states moves natural frequencies, which are those at rest."""
+    for sentence in spin_caution(probe.whole):
+        yield Notice("caution", (), sentence)
 
 
 #: cells around of the 3D solid by default

@@ -19,6 +19,7 @@ from solidgear.core import (
     LADDER,
     TOUCH,
     Body,
+    Port,
     SolidgearError,
     Solution,
     Supports,
@@ -58,6 +59,14 @@ SOFT = ("shoulder",)
 X, Z, SIGNS = [0, 5], [2, 3], np.array([[1.0, -1.0], [-1.0, 1.0]])
 
 
+def _with_stand_in(scene: Scene) -> Scene:
+    """Return a scene with the section at its start as a lumped point, where nothing is asked."""
+    first = scene.segments[0]
+    point = Port(name="(start)", y=0.0, lo=0.0, hi=first.y1, attachment="section")
+    asked = scene.ask.with_changes(quantities=judged(scene))
+    return scene.with_changes(port=point, ask=asked)
+
+
 class Probe:
     """Quick solutions of one scene.
 
@@ -72,7 +81,10 @@ class Probe:
         solutions: dict[str, Solution] | None = None,
         whole: Scene | None = None,
     ):
-        self.scene, self.body, self.whole = scene, body, whole or scene
+        #: of a scene without a lumped point, which solutions have, with a stand-in for one
+        self.scene = scene if scene.ports else _with_stand_in(scene)
+        self.points, self.seats = scene.ports, scene.stations
+        self.body, self.whole = body, whole or scene
         self.supports = as_supports(scene).on_stations(scene.stations)
         self.solutions = dict(solutions or {})
         self.meshes: dict[str, int] = {}  # number, of models solved here

@@ -34,6 +34,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         models.thin_joint,
         models.point_beyond_surface,
         models.ovalising,
+        models.spin,
         lumped.effective_mass,
         lumped.lumped_against_solid,
         lumped.frequency_range,

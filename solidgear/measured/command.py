@@ -157,6 +157,7 @@ def correlation_sheet(
         data=correlation.results,
         lines=lines,
         verdict=correlation.sentences,
+        cautions=correlation.cautions,
         sections=sections,
         viewer=viewer,
         terminal=Terminal([f"{correlation.scene}: {correlation.mesh}"], tables),
@@ -187,6 +188,7 @@ def identification_sheet(identification: Identification, units: Units = ENGINEER
         data=plain(identification),
         lines=lines,
         notes=identification.sentences,
+        cautions=identification.cautions,
         terminal=Terminal([f"{identification.scene}: {identification.mesh}"]),
     )
 

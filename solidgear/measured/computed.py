@@ -21,6 +21,7 @@ from solidgear.core import (
     modes,
     pinned,
     settle,
+    spin_caution,
 )
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import mode_bars
@@ -55,6 +56,13 @@ class Computed:
         """Model and mesh in words."""
         order = self.options.get("order")
         return f"{self.model}, order {order}" if order else self.model
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on what the frequencies leave out."""
+        return tuple(
+            spin_caution(self.scene, {str(m.name): b for m, b in zip(self.modes, self.bars)})
+        )
 
     def widths(self, springs: float) -> np.ndarray:
         """Return standard deviations (modes,) of logarithms of frequencies from those of the

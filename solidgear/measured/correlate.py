@@ -107,6 +107,7 @@ class Correlation(Sheeted):
     likeness: Likeness  #: whether the resonances can be those of this part
     #: sentences on modes that look alike on the measuring points
     of_points: tuple[str, ...] = ()
+    cautions: tuple[str, ...] = ()  #: sentences on what the computed frequencies leave out
 
     @property
     def rms(self) -> float:
@@ -171,6 +172,7 @@ class Correlation(Sheeted):
                 for mode, share in self.missed
             ],
             "sentences": self.sentences,
+            "cautions": list(self.cautions),
         }
 
 
@@ -307,6 +309,7 @@ def _paired(measured: Measured, computed: Computed) -> Correlation:
         computed=computed,
         likeness=Likeness.of(alignment),
         of_points=() if on_points is None else on_points.sentences(below),
+        cautions=computed.cautions,
     )
 
 

@@ -122,6 +122,7 @@ class Identification(ByName[Identified], Sheeted):
         "rms_left_out",
         "predicted",
         "sentences",
+        "cautions",
     )
     kind = "identification"
 
@@ -140,6 +141,7 @@ class Identification(ByName[Identified], Sheeted):
     likeness: Likeness  #: whether the resonances can be those of this part
     remarks: tuple[str, ...] = ()  #: on how the file of resonances was read
     alike: tuple[tuple[float, ...], ...] = ()  #: other values of all entries, SI, that fit as well
+    cautions: tuple[str, ...] = ()  #: sentences on what the computed frequencies leave out
 
     @property
     def by_name(self) -> dict[str, Identified]:
@@ -468,6 +470,7 @@ class _Search:
             likeness=fit.likeness,
             remarks=self.measured.remarks,
             alike=equivalent,
+            cautions=computed.cautions,
         )
 
     def _nearer(self, fit: Fit) -> np.ndarray:

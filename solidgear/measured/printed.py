@@ -40,6 +40,7 @@ CORRELATE = Printed(
         "modes": list[str],
         "not_measured": list[MISSED],  # type: ignore[valid-type]
         "sentences": list[str],
+        "cautions": list[str],
     }
 )
 IDENTIFY = Printed((Identification,))

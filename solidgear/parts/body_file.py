@@ -152,15 +152,11 @@ class BodyTable(Model):
         return [self.step] if self.step is not None else self.mesh or []
 
 
-def with_port(raw: Mapping[str, Any]) -> Mapping[str, Any]:
-    """Return the tables of a file, for a body without an axis and without a lumped point with a port
-    on the face at y = 0, since every scene has one: nothing is lumped into it.
-    """
+def check_tables(raw: Mapping[str, Any]) -> None:
+    """Refuse tables of a file that a body without an axis cannot have."""
     body = raw.get("body")
-    if not isinstance(body, Mapping) or ("block" not in body and body.get("axis") != NONE):
-        return raw
-    refuse_elsewhere(raw, "block" if "block" in body else 'body with axis = "none"')
-    return {"port": {"at": "start", "attach_to": "s1", "attachment": "section"}, **raw}
+    if isinstance(body, Mapping) and ("block" in body or body.get("axis") == NONE):
+        refuse_elsewhere(raw, "block" if "block" in body else 'body with axis = "none"')
 
 
 class PartGroup(Model):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 from solidgear.core import SceneError
-from solidgear.parts.body_file import BodyFile, BodyTable, with_port, written
+from solidgear.parts.body_file import BodyFile, BodyTable, check_tables, written
 from solidgear.parts.recognised import Recognised, with_seats
 
 
@@ -23,7 +23,7 @@ class Parts:
 
     Table = BodyTable
     Body = BodyFile
-    with_port = staticmethod(with_port)
+    check_tables = staticmethod(check_tables)
     with_seats = staticmethod(with_seats)
     refuse_parts = staticmethod(refuse_parts)
 

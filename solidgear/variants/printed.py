@@ -16,7 +16,7 @@ Number = float | None
 SENSITIVITIES = Printed((Sensitivities,))
 BUDGET = Printed((Budget,))
 SWEEP = (
-    Printed((SweptBearings,), optional=(Settled,)),
+    Printed((SweptBearings,), {"cautions": list[str]}, optional=(Settled,)),
     Printed(
         (Swept,),
         {"cautions": list[str]},
@@ -41,6 +41,7 @@ OPTIMISE = Printed(
         "followed": list[str],
         "about_bars": str,
         "gain": Any,
+        "cautions": list[str],
         "designs": list[DESIGN],  # type: ignore[valid-type]
         "sentences": list[str],
     }

@@ -8,7 +8,7 @@ shape where both shafts are described at the same stations, else to the mode of 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from time import perf_counter
 from typing import TYPE_CHECKING, Any, ClassVar
@@ -28,6 +28,7 @@ from solidgear.core import (
     Quantity,
     pinned,
     size,
+    spin_caution,
 )
 from solidgear.core.judge.answer import LEAST_TOLERANCE
 from solidgear.core.judge.change import Change, ModePair, all_pairs
@@ -213,8 +214,11 @@ def two_shafts(
     points = [port.name for port in first.further_ports if port.name in second_points]
     shafts = []
     for letter, name, scene in zip("AB", names or [s.name for s in scenes], scenes):
-        shafts.append(one_shaft(scene, tol, letter, name, points, progress=progress))
-        shafts[-1].settled.body.cache.clear()
+        shaft = one_shaft(scene, tol, letter, name, points, progress=progress)
+        shaft.settled.body.cache.clear()
+        shown = [str(mode.name) for mode in shaft.modes.modes if mode.frequency_hz > 0]
+        at_rest = spin_caution(scene, {name: shaft.bars.get(name) for name in shown})
+        shafts.append(replace(shaft, cautions=(*shaft.cautions, *at_rest)))
     a, b = shafts
     pairs, pairing = _paired(a, b)
     progress("under the loads")

@@ -271,6 +271,13 @@ def as_supports(source: Holding) -> Supports:
     return _with_masses(names, k, masses) if masses else Supports(names, k)
 
 
+def masses_alone(scene: Scene) -> Supports:
+    """Return the rigid masses of a scene on their ports, those of bearings among them, without
+    springs.
+    """
+    return _with_masses((), np.zeros((0, 0)), scene.masses)
+
+
 def _with_masses(names: tuple[str, ...], k: np.ndarray, masses: Iterable[PointMass]) -> Supports:
     """Return the springs of bearings, with masses on their ports and on further ones."""
     ports = tuple(dict.fromkeys((*names, *(mass.station for mass in masses))))

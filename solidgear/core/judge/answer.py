@@ -17,9 +17,11 @@ from collections.abc import Callable, Iterable
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, ClassVar
 
+from solidgear.core.body.mode_names import ModeName
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError, nearest, show
 from solidgear.core.frames import DOF_NAMES
+from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.quantities import canonical_name, judged
 from solidgear.core.judge.question import FamilySolver
 from solidgear.core.judge.refinement import Progress, Refinement, refine
@@ -61,7 +63,7 @@ class Answered(ByName[float], Displayed):
     shown: ClassVar[str] = "answered"
     plain_names = (
         *("scene", "tolerance", "values", "steps", "reached"),
-        *(("model", "rung"), "missing", "seconds"),
+        *(("model", "rung"), "missing", "cautions", "seconds"),
     )
 
     scene: str
@@ -72,6 +74,7 @@ class Answered(ByName[float], Displayed):
     rung: str  #: that the values come from
     #: quantities that do not exist for this scene, such as the compliance of a free motion
     missing: tuple[Quantity, ...]
+    cautions: tuple[str, ...]  #: sentences on what the numbers leave out
     seconds: float
 
     @property
@@ -149,6 +152,7 @@ def answer(
         reached=bool(values) and all(v.bar <= tol for v in values),
         rung=solver.refinement.model.name,
         missing=tuple(q for q in wanted if q not in existing),
+        cautions=tuple(spin_caution(scene, {v.quantity: v.bar for v in values})),
         seconds=time.perf_counter() - start,
     )
 
@@ -254,7 +258,7 @@ def asked_for(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
                     f"ask: {name}: a frequency belongs to the whole shaft; ask for {word}"
                 )
             word = canonical_name(scene, requested)
-        elif requested.points or word not in (*QUANTITIES, *ACROSS):
+        elif requested.points or not (word in (*QUANTITIES, *ACROSS) or _is_mode(word)):
             quantities = (*QUANTITIES, *ACROSS, *WORDS, "f1")
             if place is not None:
                 raise SolidgearError(
@@ -265,8 +269,14 @@ def asked_for(scene: Scene, ask: Iterable[str] | str) -> tuple[Quantity, ...]:
                 f"ask: there is no quantity {show(name, 40)}{nearest(name, quantities)}; there are "
                 f"{', '.join(quantities)}"
             )
-        out.append(word)
+        out.append(word if word.points else canonical_name(scene, word))
     return tuple(dict.fromkeys(out))
+
+
+def _is_mode(name: Quantity) -> bool:
+    """Return True for the name of a mode of bending, stretch or torsion, whatever its number."""
+    mode = ModeName(name)
+    return mode.family in FAMILIES and bool(mode.number) and not mode.rigid and not mode.plane
 
 
 def _lowest(scene: Scene, place: int) -> Quantity:

@@ -80,8 +80,11 @@ def at_points(names: Iterable[Quantity], points: Iterable[str]) -> tuple[Quantit
 
 
 def usual(scene: Scene) -> tuple[Quantity, ...]:
-    """Return the quantities that models are judged by unless a scene says otherwise: at all points."""
-    return at_points(JUDGED, (port.name for port in scene.further_ports))
+    """Return the quantities that models are judged by unless a scene says otherwise: at all points,
+    and frequencies alone without any.
+    """
+    names = JUDGED if scene.ports else [name for name in JUDGED if name.is_frequency]
+    return at_points(names, (port.name for port in scene.further_ports))
 
 
 def judged(scene: Scene) -> tuple[Quantity, ...]:
@@ -94,7 +97,9 @@ def canonical_name(scene: Scene, name: Quantity) -> Quantity:
     points in the order of the scene where it does not matter; SolidgearError if the scene has no
     such point, or for a stiffness between points.
     """
-    ports = [port.name for port in scene.ports]
+    if name.is_frequency:
+        return name
+    ports = [scene.port.name, *(port.name for port in scene.further_ports)]
     points = list(name.points_among(ports))
     for name_of_point in points:
         if name_of_point not in ports:

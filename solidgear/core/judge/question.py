@@ -127,7 +127,7 @@ class FamilySolver:
                 spare=True,
                 ovalising=False,
             )
-        values = numbers(statics, modes)
+        values = numbers(statics, modes, frequencies)
         judged_names = self._judged_names(values, names)
         try:
             judged = bounded(scene, body, supports, statics, modes, judged_names, values.solver)

@@ -22,7 +22,7 @@ from typing import TYPE_CHECKING, Any
 
 from solidgear.core.body import Body, as_supports
 from solidgear.core.bounds.refining import Meshed
-from solidgear.core.errors import NoBounds, SolidgearError
+from solidgear.core.errors import NoBounds
 from solidgear.core.judge.answer import read_tolerance, solve_cheapest
 from solidgear.core.judge.bounded import mode_bars, static_bars
 from solidgear.core.judge.quantities import at_points, between
@@ -87,6 +87,11 @@ class Settled:
         return widest(self.bars)
 
 
+def _main_point(scene: Scene) -> str:
+    """Return the name of the main lumped point; empty without one."""
+    return next((port.name for port in scene.ports), "")
+
+
 def widest(bars: Mapping[Quantity, float]) -> tuple[Quantity, float] | None:
     """Return the quantity with the largest error bar, and the bar; None without any.
 
@@ -134,15 +139,12 @@ def settle(
         answer.
     """
     tol = read_tolerance(scene.ask.tolerance if tol is None else tol)
+    main = () if ask == "modes" else (scene.port.name,)
     if without_axis(scene):
-        if ask != "modes" and scene.port.patch is None:
-            raise SolidgearError(
-                f"{scene.name} has no lumped point: give it a port with a patch, or ask for modes"
-            )
-        return _settled_body(scene, tol, ask, (scene.port.name, *points), progress)
+        return _settled_body(scene, tol, ask, (*main, *points), progress)
     wanted = tuple(q for q in QUANTITIES if q.kind in QUESTIONS[ask])
     if points:
-        names = {scene.port.name, *points}
+        names = {*main, *points}
         crossed = between(wanted, [port.name for port in scene.ports if port.name in names])
         wanted = (*at_points(wanted, points), *crossed)
 
@@ -174,7 +176,7 @@ def settle(
         steps=tuple(steps),
         reached=judged and all(bar <= tol for bar in bars.values()),
         missing=tuple(q for q in wanted if q not in bars),
-        point=scene.port.name,
+        point=_main_point(scene),
         mesh=refinement.mesh if refinement.model.follows else None,
     )
 
@@ -255,7 +257,7 @@ def _settled_body(
         steps=tuple(steps),
         reached=reached,
         missing=(),
-        point=scene.port.name,
+        point=_main_point(scene),
     )
 
 

@@ -97,9 +97,17 @@ class Statics:
         return values | measure(None, None, self.further, self.coupled, ACROSS)
 
 
-def numbers(statics: Statics | None, modes: ModeSet | None) -> Numbers:
-    """Return all numbers of statics and modes, either of which may not have been solved."""
+def numbers(
+    statics: Statics | None, modes: ModeSet | None, wanted: Iterable[Quantity] = ()
+) -> Numbers:
+    """Return all numbers of statics and modes, either of which may not have been solved, with `wanted`
+    frequencies that are no usual ones.
+    """
     values = measure(None, modes) if statics is None else statics.values(modes)
+    for name in wanted:
+        mode = modes.named(name) if modes is not None else None
+        if mode is not None:
+            values.setdefault(name, mode.frequency_hz)
     return Numbers(values, _solver_errors(statics, modes, values))
 
 
@@ -213,8 +221,8 @@ def solve(
     counted twice, up to a frequency in Hz. Errors are those of the builder, the statics and the
     modes.
     """
+    ports = [scene.port.name, *(port.name for port in scene.further_ports)]
     body = build(scene, model, **options)
-    ports = [port.name for port in scene.ports]
     return answer_of_body(body, as_supports(scene), ports, n, max_frequency=max_frequency)
 
 

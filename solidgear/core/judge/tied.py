@@ -105,7 +105,7 @@ def tied_by(
 ) -> Tied:
     """Solve statics of a body tied in one way."""
     with meter.stage("statics"):
-        ports = [port.name for port in scene.ports]
+        ports = [scene.port.name, *(port.name for port in scene.further_ports)]
         return Tied(body, supports, Statics.at_points(body, supports, ports, attachments))
 
 

@@ -101,7 +101,7 @@ def _is_at_port(load: Any) -> bool:
 class SceneFile(Model):
     """A scene file; tables of stations and features are read later, once the shaft is known."""
 
-    needs: ClassVar = (("segment", "body"), ("material", "body"), ("port", "body"))
+    needs: ClassVar = (("segment", "body"), ("material", "body"))
 
     #: title of the shaft in tables and pages
     title: str = ""
@@ -109,8 +109,9 @@ class SceneFile(Model):
     name: str | None = None
     #: where the numbers come from
     source: str = ""
-    #: how seats and surfaces follow what they carry, unless their tables say otherwise
-    attachment: Attachment = "average"
+    #: how seats and surfaces follow what they carry, unless their tables say otherwise; without it by
+    #: their means, and held seats as rigid pieces
+    attachment: Attachment | None = None
     #: material of segments without one: a name, or E, nu and density
     material: Annotated[Material, BeforeValidator(by_name), Written(Material | MaterialName)]
     #: file of a list of bearings (CSV) that designations are looked up in first
@@ -131,8 +132,11 @@ class SceneFile(Model):
     feature: Annotated[list[Table], Written(list[Feature])] = []
     #: elastic housing of all bearings
     housing: Annotated[Table | None, Holds(Housing)] = None
-    #: lumped points that numbers are given for, such as the middle of a gear
-    port: Annotated[list[Table], BeforeValidator(_several), Holds(Port), Written(Port | list[Port])]
+    #: lumped points that compliances are given for, such as the middle of a gear; natural frequencies
+    #: need none
+    port: Annotated[
+        list[Table], BeforeValidator(_several), Holds(Port), Written(Port | list[Port])
+    ] = []
     #: loads on the shaft, under which catalogue bearings settle; a single table of components acts at
     #: the main lumped point
     load: Annotated[
@@ -285,8 +289,6 @@ class _Reading:
         housing = None
         if (table := file.housing) is not None:
             housing = self.problems.read(lambda: read_housing(table, place), ("housing",))
-        if not (file.port or {"port", "body"} & self.spoilt):
-            self.problems.append(SceneError("a scene needs a port", path=("port",)))
         ports = [self._row(Port, ("port", k), table) for k, table in enumerate(file.port)]
         masses = [self._row(PointMass, ("mass", k), table) for k, table in enumerate(file.mass)]
         load, loads = self._loads()
@@ -303,14 +305,14 @@ class _Reading:
             self._judge(rows, load)
         self.problems.raise_any()
         things = {key: tuple(row.thing for row in kind_rows) for key, kind_rows in rows.items()}
-        main, *further = things.pop("ports")
-        stations = [main, *further, *things["bearings"], *things["masses"]]
+        ports = things.pop("ports")
+        stations = [*ports, *things["bearings"], *things["masses"]]
         stations += [seated.seat for seated in things["loads"] if seated.seat is not None]
         scene = Scene.from_parts(
             self.segments,
             self._material(),
-            port=main,
-            further_ports=tuple(further),
+            main_port=ports[0] if ports else None,
+            further_ports=ports[1:],
             **things,
             title=file.title,
             name=name_of(self.where) if file.name is None else file.name,
@@ -338,7 +340,8 @@ class _Reading:
                 plural = "masses" if key == "mass" else f"{key}s"
                 raise SceneError(rules.too_many(plural, len(raw[key]), most), path=(key,))
         try:
-            return kind(**PARTS.with_port(raw)), set()
+            PARTS.check_tables(raw)
+            return kind(**raw), set()
         except SceneError as error:
             problems = [
                 problem.located(raw, path=_drop_tag(problem.path)) for problem in error.problems
@@ -346,8 +349,9 @@ class _Reading:
         self.problems += problems
         spoilt = {str(problem.path[0]) for problem in problems}
         sound = {key: value for key, value in raw.items() if key not in spoilt}
-        needed = {"material": STEEL, "segment": [], "port": []}
-        return SceneFile(**{**needed, **PARTS.with_port(sound)}), spoilt
+        needed = {"material": STEEL, "segment": []}
+        PARTS.check_tables(sound)
+        return SceneFile(**{**needed, **sound}), spoilt
 
     def _name_datums(self) -> None:
         """Name the datums, from the file as it stands: a segment of a wrong length has its name."""
@@ -475,9 +479,9 @@ class _Reading:
         stations |= {mass.name for mass in things["masses"]}
         things["loads"] = [*seat_loads(things["loads"], self.segments, [*stations])]
         problems = [*rules.problems_between(self.segments, **things, complete=complete)]
-        if complete and things["ports"]:
+        if complete:
             problems += rules.question_problems(things["ports"], self.file.ask.quantities)
-        if complete and things["ports"] and all(row.thing for row in rows["loads"]):
+        if complete and all(row.thing for row in rows["loads"]):
             problems += self._load_problems(things, load)
         self.problems += [
             problem.located(None, path=_in_file(problem.path, sound)) for problem in problems

@@ -91,7 +91,7 @@ def load_problems(
     yield from _misplaced(loads, stations, turns)
     yield from _unknown(torque_at, [*dict.fromkeys(stations)])
     yield from _case_problems(
-        cases, [entry.name for entry in all_loads(load, loads, ports[0].name)]
+        cases, [entry.name for entry in all_loads(load, loads, ports[0].name if ports else "")]
     )
 
 

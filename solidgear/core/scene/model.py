@@ -96,7 +96,8 @@ class Scene(Displayed, Model):
     housing : Housing or None
         A rigid housing of all bearings on a 6x6 spring; in place of `housing_axial`.
     port : Port
-        The lumped point; with several, the main one.
+        The lumped point; with several, the main one. A file may have none: then what asks for it
+        raises SceneError.
     further_ports : tuple of Port
         Other lumped points, such as a second gear.
     load : BearingLoad or None
@@ -135,6 +136,7 @@ class Scene(Displayed, Model):
     """
 
     shown: ClassVar[str] = "scene"
+    _aliases: ClassVar[Mapping[str, str]] = {"port": "main_port"}
 
     title: str = ""
     name: str = "scene"
@@ -148,7 +150,7 @@ class Scene(Displayed, Model):
     blends: tuple[Blend, ...] = ()
     housing_axial: AxialSpring | None = None
     housing: Housing | None = None
-    port: Port
+    main_port: Port | None = None
     further_ports: tuple[Port, ...] = ()
     load: BearingLoad | None = None
     loads: tuple[ShaftLoad, ...] = ()
@@ -168,7 +170,8 @@ class Scene(Displayed, Model):
             self._place()
             for name in ("bearings", "masses", "further_ports"):
                 object.__setattr__(self, name, snap_seats(getattr(self, name), self.segments))
-            object.__setattr__(self, "port", snap_seats([self.port], self.segments)[0])
+            for port in snap_seats(self.ports[:1], self.segments):
+                object.__setattr__(self, "main_port", port)
             object.__setattr__(
                 self, "masses", seat_masses(self.masses, self.segments, self._stations())
             )
@@ -196,7 +199,9 @@ class Scene(Displayed, Model):
     def _place(self) -> None:
         """Put things made by words of a file on the shaft, bearings first, which others refer to."""
         kinds = ("bearings", "masses", "loads", "features", "blends", "further_ports")
-        things: dict[str, Any] = {key: getattr(self, key) for key in (*kinds, "port", "housing")}
+        things: dict[str, Any] = {
+            key: getattr(self, key) for key in (*kinds, "main_port", "housing")
+        }
         things = {key: value for key, value in things.items() if value is not None}
         if all(t.words is None for value in things.values() for t in _several(value)):
             return
@@ -205,7 +210,7 @@ class Scene(Displayed, Model):
             several = isinstance(value, tuple)
             placed = []
             for k, thing in enumerate(_several(value)):
-                path = (key, k) if several else (key,)
+                path = (key, k) if several else (key.removeprefix("main_"),)
                 placed.append(problems.read(partial(thing.placed_on, places, path)))
                 if key == "bearings" and placed[-1] is not None:
                     places.add(f"bearing.{thing.name}", placed[-1].y)
@@ -268,11 +273,12 @@ class Scene(Displayed, Model):
         segments = tuple(_end_to_end(segments, material))
         if not segments:
             raise SceneError("a scene needs at least one segment", path=("segments",))
-        if port is None:
+        if port is None and "main_port" not in rest:
             longest = max(segments, key=lambda s: s.length)
             port = Port(y=(longest.y0 + longest.y1) / 2, lo=longest.y0, hi=longest.y1)
+        rest.setdefault("main_port", port)
         bearings, pairs = paired(tuple(bearings), arrangement)
-        scene = cls(segments=segments, material=material, bearings=bearings, port=port, **rest)
+        scene = cls(segments=segments, material=material, bearings=bearings, **rest)
         turned = {
             k: scene.bearings[k].held_towards(way)
             for pair in pairs
@@ -414,9 +420,16 @@ class Scene(Displayed, Model):
         return [segment for segment in self.segments if segment.y0 <= y <= segment.y1]
 
     @property
+    def port(self) -> Port:
+        """The main lumped point; SceneError where there is none."""
+        if self.main_port is None:
+            raise rules.without_point(self)
+        return self.main_port
+
+    @property
     def ports(self) -> tuple[Port, ...]:
-        """All lumped points, the main one first."""
-        return (self.port, *self.further_ports)
+        """All lumped points, the main one first; none of a scene without."""
+        return () if self.main_port is None else (self.main_port, *self.further_ports)
 
     @property
     def stations(self) -> tuple[Port | Bearing | PointMass, ...]:
@@ -425,7 +438,7 @@ class Scene(Displayed, Model):
         """
         seated = (m for m in self.masses if m.on is None)
         loaded = (load.seat for load in self.loads if load.seat is not None)
-        return (self.port, *self.bearings, *seated, *loaded, *self.further_ports)
+        return (*self.ports[:1], *self.bearings, *seated, *loaded, *self.further_ports)
 
     @property
     def is_loaded(self) -> bool:
@@ -545,10 +558,10 @@ class Scene(Displayed, Model):
         SceneError
             An unknown attachment, or two rigid surfaces that overlap.
         """
-        port, *further = (p.with_changes(attachment=attachment) for p in self.ports)
+        ports = tuple(p.with_changes(attachment=attachment) for p in self.ports)
         return self.with_changes(
-            port=port,
-            further_ports=tuple(further),
+            port=ports[0] if ports else None,
+            further_ports=ports[1:],
             bearings=tuple(b.attached(attachment) for b in self.bearings),
             masses=tuple(m.attached(attachment) for m in self.masses),
             loads=tuple(load.attached(attachment) for load in self.loads),

@@ -38,7 +38,9 @@ def off_patches(scene: Any) -> dict[str, Any]:
     """Return changes of a scene that take all stations off the patches of the body."""
     if scene.body is None or scene.body.edges is None:
         return {}
-    port = scene.port.with_changes(patch=None, y=scene.length / 2, lo=0.0, hi=scene.length)
+    port = scene.main_port and scene.main_port.with_changes(
+        patch=None, y=scene.length / 2, lo=0.0, hi=scene.length
+    )
     return {"port": port, "further_ports": (), "bearings": (), "masses": ()}
 
 

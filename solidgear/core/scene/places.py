@@ -49,7 +49,9 @@ class RoundPart(Protocol):
 class Places:
     """Places of the shaft of a file, by name."""
 
-    def __init__(self, attachment: Any, *, of_body: bool = False, part: RoundPart | None = None):
+    def __init__(
+        self, attachment: Any = None, *, of_body: bool = False, part: RoundPart | None = None
+    ):
         #: of all datums in the order of the file, also those whose place is in doubt; None where
         #: names of segments are in doubt themselves
         self.names: list[str] | None = ["start", "end"]
@@ -57,7 +59,7 @@ class Places:
         self.segments: list[str] = []
         #: ends of each segment's surface, which can carry a port, m
         self.surface: dict[str, tuple[float, float]] = {}
-        self.attachment = attachment  #: the usual one
+        self.attachment = attachment  #: that of the file; None where each thing has its usual one
         self.of_body = of_body  #: whether the shaft is a part from a file
         self.part = part  #: once it is read
 
@@ -196,7 +198,7 @@ class Placed(Model):
             return
         words = by_key(self.Words)
         fields = {key: value for key, value in data.items() if key not in words}
-        places = Places("average", of_body=True)
+        places = Places(of_body=True)
         places.names, places.datums["start"] = None, 0.0
         word_entries = {key: value for key, value in data.items() if key in words}
         if "y" in self.sources and "y" in fields and "position" in words:
@@ -287,7 +289,7 @@ class Placed(Model):
     @classmethod
     def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
         """Return the attachment of a thing whose table names none."""
-        return places.attachment
+        return places.attachment or "average"
 
     @classmethod
     def _construct(

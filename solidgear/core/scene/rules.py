@@ -281,6 +281,31 @@ def _port_path(index: int) -> tuple[str | int, ...]:
     return ("further_ports", index - 1) if index else ("port",)
 
 
+def without_point(scene: Any) -> SceneError:
+    """Return the error of what needs a lumped point, of a scene without one, with a table that can be
+    pasted into its file.
+    """
+    names = {station.name for station in scene.stations}
+    name = next(n for n in ("gear", "point", "lumped point") if n not in names)
+    body = scene.body
+    if body is not None and body.edges is not None:
+        patches = [patch.name for patch in body.patches]
+        held = [p for p in patches if p not in {s.patch.name for s in scene.bearings if s.patch}]
+        if not patches:
+            return SceneError(
+                f"{scene.name} has no lumped point, and no named patch that one could lie on: name a "
+                "group of surfaces in the mesher, or ask for natural frequencies alone"
+            )
+        place = f'patch = "{(held or patches)[-1]}"'
+    else:
+        longest = max(scene.segments, key=lambda s: s.length).name
+        place = f'at = "{longest}.middle", attach_to = "{longest}"'
+    return SceneError(
+        f"{scene.name} has no lumped point, at which compliances are measured: as the first line of "
+        f'the file write port = {{ name = "{name}", {place} }}, or where it belongs'
+    )
+
+
 def no_such_point(name: str, names: Iterable[str]) -> str:
     """Return the reason to refuse the name of a lumped point."""
     names = list(names)

@@ -63,8 +63,8 @@ def without_axis(scene: Shaft) -> bool:
 
 
 def turning_speed(scene: Any) -> float | None:
-    """Return the speed of a shaft, rad/s: of its fastest bearing, else of its lubrication; None where
-    neither has one.
+    """Return the largest speed of a shaft, rad/s, of those that its bearings, its lubrication and the
+    cases of its loads state; None where none does.
 
     Examples
     --------
@@ -72,10 +72,10 @@ def turning_speed(scene: Any) -> float | None:
     >>> turning_speed(sg.load("geometry/shaft_stepped.toml")) is None
     True
     """
-    data = [b.catalogue for b in getattr(scene, "bearings", ()) if b.catalogue is not None]
-    fastest = max((catalogue.speed for catalogue in data), default=0.0)
-    oil = getattr(scene, "lubrication", None)
-    return fastest or (oil.speed if oil is not None else None) or None
+    data = [b.catalogue for b in scene.bearings if b.catalogue is not None]
+    stated = [catalogue.speed for catalogue in data] + [case.speed for case in scene.cases]
+    stated.append(None if scene.lubrication is None else scene.lubrication.speed)
+    return max((abs(speed) for speed in stated if speed), default=None)
 
 
 def feature_labels(features: Iterable[Any]) -> str:

@@ -348,7 +348,7 @@ class Patches:
 def places_on(segments: Sequence[Segment], body: Any = None) -> Places:
     """Return the places on segments end to end, as those of the shapes of a file."""
     part = None if body is None else Patches(body)
-    places = Places("average", of_body=body is not None, part=part)
+    places = Places(of_body=body is not None, part=part)
     places.datums |= {"start": segments[0].y0, "end": segments[-1].y1}
     names = {segment.name.removesuffix(BEHIND): segment for segment in segments}
     for name in names:

@@ -52,7 +52,7 @@ def _bearing(bearing: Bearing, table: Mapping[str, Any]) -> Bearing:
 def _housing(scene: Scene, table: Mapping[str, Any]) -> dict[str, Any]:
     """Return the fields of a scene for the housing of a table, at the place of the old one."""
     housing = scene.housing
-    places = Places("average")
+    places = Places()
     places.datums["start"] = 0.0
     housing_table = {key: value for key, value in table.items() if key != "from"}
     if housing is not None:

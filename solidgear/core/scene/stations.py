@@ -78,6 +78,15 @@ class Settled(Model):
     stiffness: Matrix
 
 
+def usual_attachment(bearing: Mapping[str, Any]) -> Attachment:
+    """Return how a bearing is attached that says nothing, by its table: the middle of an end face as
+    a section, a held seat as one rigid piece, any other by its mean.
+    """
+    if bearing.get("face") is not None:
+        return "section"
+    return "average" if bearing.get("hold") is None else "rigid"
+
+
 class Bearing(Placed):
     """A bearing: a 6x6 stiffness between ground and the seat it sits on.
 
@@ -104,7 +113,7 @@ class Bearing(Placed):
     scale : float
         Factor on its whole stiffness; bearing loads are found without it.
     attachment : {'average', 'rigid', 'section'}
-        How the seat follows the bearing.
+        How the seat follows the bearing: by its mean, but a held seat as one rigid piece.
     status : str
         Source of its numbers: published, identified, assumed, measured, or for catalogue data
         calculated (inner geometry given) or estimated.
@@ -114,7 +123,8 @@ class Bearing(Placed):
         A floating bearing slides in its seat and carries nothing along y; by default cylindrical
         and needle rollers float, and all others locate.
     hold : {'clamped', 'pinned'} or None
-        In place of a stiffness: no motion, or rotations only.
+        In place of a stiffness: no motion, or rotations only, of the seat as one rigid piece; with
+        another `attachment`, and at a `face`, of its mean alone.
     face : {'start', 'end'} or None
         The end face whose middle it holds, as a section; the seat is then the rim beside that face.
     patch : Patch or None
@@ -223,8 +233,7 @@ class Bearing(Placed):
             data["matrix"] = data.pop("stiffness")
         if data.get("hold") in tuple(HOLDS) and "matrix" not in data:
             data["matrix"] = held_matrix(data["hold"])
-        if data.get("face") is not None:
-            data.setdefault("attachment", "section")
+        data.setdefault("attachment", usual_attachment(data))
         return data
 
     @classmethod
@@ -251,8 +260,10 @@ class Bearing(Placed):
 
     @classmethod
     def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
-        """Return the usual attachment, a section for the middle of an end face."""
-        return "section" if "face" in table else super().usually_attached(table, places)
+        """Return the attachment of the file, if it has one, for all but the middle of an end face."""
+        if "face" in table or places.attachment is None:
+            return usual_attachment(table)
+        return places.attachment
 
     @model_validator(mode="after")
     def _status_of_data(self) -> Bearing:
@@ -303,6 +314,9 @@ class Bearing(Placed):
         if not {"matrix", "stiffness"} & {*changes} and "catalogue" in changes:
             same = changes["catalogue"] == self.catalogue
             changes["matrix"] = self.matrix if same else None
+        if "hold" in changes and self.attachment == usual_attachment(dict(self)):
+            usual = usual_attachment(dict(self) | changes)
+            changes = {"attachment": usual, **changes}
         return super().with_changes(**changes)
 
     @property

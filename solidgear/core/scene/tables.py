@@ -80,9 +80,8 @@ class PartReader:
     Table: Any = Absent  #: type of the table
     Body: Any = Absent  #: type of the body that it becomes
 
-    def with_port(self, tables: Mapping[str, Any]) -> Mapping[str, Any]:
-        """Return the tables of a file with the port that a body without an axis needs."""
-        return tables
+    def check_tables(self, tables: Mapping[str, Any]) -> None:
+        """Refuse tables of a file that its body cannot have."""
 
     def with_seats(self, part: Any, stations: Iterable, segments: Sequence) -> Any:
         """Return the body with remarks on seats that are not whole."""

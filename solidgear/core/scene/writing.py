@@ -80,7 +80,7 @@ def unsettled_tables(scene: Scene) -> Table:
         "mass": [_mass(mass) for mass in scene.masses],
         "feature": [_feature(feature) for feature in scene.features],
         "housing": _housing(scene),
-        "port": [_port(scene, port) for port in scene.ports if not _is_usual(scene, port)],
+        "port": [_port(scene, port) for port in scene.ports],
         "load": [_load(load) for load in scene.loads] or entry_of(scene.load),
         "case": [table_of(case) for case in scene.cases],
         "lubrication": entry_of(scene.lubrication),
@@ -159,7 +159,9 @@ def _bearing(scene: Scene, bearing: Bearing) -> Table:
     words = ["name", "y", "seat_width", "matrix", "catalogue", "housing", "hold", "face", "patch"]
     if bearing.face is not None:  # always a section
         words.append("attachment")
-    return table_of(bearing, leave_out=(*words, *table)) | table
+    # a held seat is rigid where nothing is written, in whatever way its file attaches others
+    write = ("attachment",) if bearing.hold is not None else ()
+    return table_of(bearing, leave_out=(*words, *table), write=write) | table
 
 
 def _port(scene: Scene, port: Port) -> Table:
@@ -171,12 +173,6 @@ def _port(scene: Scene, port: Port) -> Table:
         **place,
         **table_of(port, leave_out=("name", "y", "lo", "hi", "patch")),
     }
-
-
-def _is_usual(scene: Scene, port: Port) -> bool:
-    """Return True for the port that a body without an axis has without words."""
-    free = scene.body is not None and scene.body.edges is not None
-    return free and port.patch is None
 
 
 def _on_patch(body: Any, patch: Patch) -> Table:

@@ -23,16 +23,23 @@ CLOSE = 0.15
 
 
 class Mixture(NamedTuple):
-    """Two modes that are mixtures of the same two motions."""
+    """A mode that is a mixture of two motions, with the mode that is one of the same two if it is near."""
 
-    name: str  #: of the first mode
-    partner: str  #: name of the second mode
-    share: float  #: of the modal mass of the first that moves as its family does
+    name: str  #: of the mode
+    partner: str  #: name of the second mode; empty where none is near
+    share: float  #: of the modal mass that moves as its family does
     gap: float  #: relative difference of the frequency of the partner
+    second: str  #: family of the second motion
+    rest: float  #: share of the modal mass that moves so
 
     @property
     def sentence(self) -> str:
         """Sentence for a reader."""
+        if not self.partner:
+            return (
+                f"{self.name} is {100 * self.rest:.0f} % {self.second}: its name is that of the "
+                f"larger part, {100 * self.share:.0f} %"
+            )
         return (
             f"{self.name} and {self.partner} ({100 * self.gap:+.2g} % apart) are mixtures of the "
             f"same two motions, the first {100 * self.share:.0f} % as named: another mesh or "
@@ -41,8 +48,8 @@ class Mixture(NamedTuple):
 
 
 def mixtures(mode_set: ModeSet) -> tuple[Mixture, ...]:
-    """Return modes with a name that is a toss-up, and the mode that shares the motion: each pair
-    once, in ascending order of frequency.
+    """Return modes with a name that is a toss-up, with the mode that shares the motion where one is
+    near: each pair once, in ascending order of frequency.
     """
     out: list[Mixture] = []
     elastic = [m for m in mode_set.modes if m.frequency_hz > 0 and m.family in FAMILIES]
@@ -54,10 +61,11 @@ def mixtures(mode_set: ModeSet) -> tuple[Mixture, ...]:
             continue
         partners = [m for m in elastic if m.family == second and by_mode[m.name][second] < TOSS_UP]
         gaps = [(m.frequency_hz / mode.frequency_hz - 1, m.name) for m in partners]
-        for gap, partner in sorted(gaps, key=lambda pair: abs(pair[0]))[:1]:
-            listed = any({mode.name, partner} == {o.name, o.partner} for o in out)
-            if abs(gap) < CLOSE and not listed:
-                out.append(Mixture(mode.name, partner, family_shares[mode.family], gap))
+        near = [pair for pair in gaps if abs(pair[0]) < CLOSE]
+        gap, partner = min(near, key=lambda pair: abs(pair[0]), default=(0.0, ""))
+        if not any({mode.name, partner} == {o.name, o.partner} for o in out):
+            shares = family_shares[mode.family], family_shares[second]
+            out.append(Mixture(mode.name, partner, shares[0], gap, second, shares[1]))
     return tuple(out)
 
 

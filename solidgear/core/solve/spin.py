@@ -1,4 +1,4 @@
-r"""Opening of natural frequencies by spin, to first order, from modes at rest.
+r"""Natural frequencies under spin, from modes at rest.
 
 A shape u of a body of revolution that turns at :math:`\Omega`, seen from outside, moves particles
 at :math:`\partial u/\partial t + \Omega\,\partial u/\partial\theta`, components taken along fixed
@@ -6,36 +6,55 @@ axes. Of the kinetic energy the term linear in the speed couples two shapes a an
 
 .. math:: G_{ab} = \int \rho\, a \cdot \partial b/\partial\theta,
 
-which is antisymmetric. Twins at f part to :math:`f \pm |G|\,n` with n the turns in a second, and two
-modes that lie 2 D apart to :math:`\pm\sqrt{D^2 + (G n)^2}` about their mean. What grows with the
-square of the speed is left out: centrifugal terms and stress stiffening, which only belong together.
+which is antisymmetric. With n turns in a second the shapes x of frequencies F at rest, Hz, whirl at f,
+
+.. math:: (F^2 - f^2 + 2 i f n G)\, x = 0,
+
+the eigenvalues of a Hermitian matrix (:func:`whirled`); a few modes above the one in question are
+enough for three digits. To first order twins part to :math:`F \pm |G|\,n`, and two modes that lie 2 D
+apart to :math:`\pm\sqrt{D^2 + (G n)^2}` about their mean. What grows with the square of the speed is
+left out: centrifugal terms and stress stiffening, which only belong together. Sections that move as
+one have none of the former. Two waves around and more are mainly carried round, which is all of first
+order: there the linear term must not be followed any further by itself.
 
 With p, q and w of :mod:`solidgear.core.models.harmonic.blocks` a shape of n waves and its twin, a quarter
 of a wave further round, have :math:`G = (n - 1) M_p + (n + 1) M_q + n M_w`; of a beam, whose sections
-tilt as one, that is the rotary inertia (Genta 2005, Dynamics of Rotating Systems, ch. 4).
+tilt as one, that is the rotary inertia (Genta 2005, Dynamics of Rotating Systems, ch. 4). Bodies whose
+model gives no such matrix are taken as beams: their sections tilt as one too.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
+from typing import NamedTuple
 
 import numpy as np
 
 from solidgear.core.body import FURTHER, Body, Supports
 from solidgear.core.body.model import SINE
 from solidgear.core.solve.circumference import Circumference, circumference_of
+from solidgear.core.solve.families import FAMILIES
 from solidgear.core.solve.modes import Mode
 
+#: stations along a body whose sections are taken as rigid discs
+STATIONS = 60
 #: unknowns of one shape by block
 Vectors = Mapping[int, np.ndarray]
 
 
-def couplings(body: Body, supports: Supports, shapes: Sequence[Vectors]) -> np.ndarray | None:
+class Whirl(NamedTuple):
+    """What spin does to the frequency of a mode."""
+
+    #: of the shapes of the mode that spin moves down, and up, the most: by how much of the frequency
+    down: float
+    up: float
+    first_order: bool  #: whether it is known to first order alone
+
+
+def couplings(body: Body, supports: Supports, shapes: Sequence[Vectors]) -> np.ndarray:
     """Compute the antisymmetric (k, k) couplings G between shapes of unit mass, masses on ports
-    included; None for a body whose model does not give them, such as a sector.
+    included, of a body that turns about its axis.
     """
-    if not body.mesh.get("axis", True):
-        return None
     fit_and_motion = circumference_of(body)
     if fit_and_motion is not None:
         fit, displacements = fit_and_motion
@@ -49,7 +68,7 @@ def couplings(body: Body, supports: Supports, shapes: Sequence[Vectors]) -> np.n
             if swirl is not None:
                 out += _antisymmetric(_columns(shapes, cosine), _columns(shapes, sine), swirl)
     else:
-        return None
+        out = _of_sections(body, shapes)
     return out + _of_masses(body, supports, shapes)
 
 
@@ -66,21 +85,57 @@ def opened(frequency: np.ndarray, coupling: np.ndarray, turns: float) -> np.ndar
     return (np.hypot(half, coupling * turns) - half).max(axis=1, initial=0.0)
 
 
-def spin_openings(
-    body: Body, supports: Supports, modes: Sequence[Mode], turns: float
-) -> dict[str, float]:
-    """Return the frequencies, Hz, by which spin opens each of some elastic modes to either side, by
-    name; empty for a body whose model does not give them.
+def whirled(frequency: np.ndarray, coupling: np.ndarray, turns: float) -> np.ndarray:
+    """Return (k,) frequencies, Hz, at which shapes whirl at so many turns a second, each in the place
+    of the shape that it comes from, by the frequencies at rest, Hz, and the :func:`couplings`.
+
+    With the velocities and F times the displacements the motion has a skew matrix, whose eigenvalues
+    are all imaginary.
+
+    Examples
+    --------
+    >>> pair = np.array([[0.0, 0.5], [-0.5, 0.0]])
+    >>> [round(float(f), 2) for f in sorted(whirled(np.array([100.0, 100.0]), pair, turns=20.0))]
+    [90.5, 110.5]
     """
-    elastic = [mode for mode in modes if mode.frequency_hz > 0]
-    shapes = [(mode, shape) for mode in elastic for shape in whole_shapes(mode)]
+    from scipy.optimize import linear_sum_assignment  # start-up: of files with a speed alone
+
+    count, at_rest = len(frequency), np.diag(frequency)
+    skew = np.block([[-2 * turns * coupling, -at_rest], [at_rest, np.zeros((count, count))]])
+    values, vectors = np.linalg.eigh(1j * skew)
+    values, vectors = values[count:], vectors[:, count:]  # the others are the same with other signs
+    share = np.abs(vectors[:count]) ** 2 + np.abs(vectors[count:]) ** 2
+    # two shapes may share two whirls equally: the nearer one is its own
+    ratio = np.maximum(values, 0.0)[None, :] / frequency[:, None]
+    near = np.minimum(ratio, 1 / np.maximum(ratio, 1e-300))
+    shapes, whirls = linear_sum_assignment(-share * near)
+    out = np.empty(count)
+    out[shapes] = values[whirls]
+    return out
+
+
+def spin_moves(
+    body: Body, supports: Supports, modes: Sequence[Mode], turns: float
+) -> dict[str, Whirl]:
+    """Return what so many turns a second do to each of some elastic modes, by name."""
+    shapes = [
+        (mode, shape) for mode in modes if mode.frequency_hz > 0 for shape in whole_shapes(mode)
+    ]
+    frequency = np.array([mode.frequency_hz for mode, _ in shapes])
     coupling = couplings(body, supports, [shape for _, shape in shapes])
-    if coupling is None:
-        return {}
-    openings = opened(np.array([mode.frequency_hz for mode, _ in shapes]), coupling, turns)
-    out: dict[str, float] = {}
-    for (mode, _), hz in zip(shapes, openings):
-        out[str(mode.name)] = max(float(hz), out.get(str(mode.name), 0.0))
+    opening = opened(frequency, coupling, turns)
+    beamlike = np.array([mode.family in FAMILIES for mode, _ in shapes], bool)
+    moved = np.zeros(len(shapes))
+    inside = np.ix_(beamlike, beamlike)
+    moved[beamlike] = whirled(frequency[beamlike], coupling[inside], turns) - frequency[beamlike]
+    out: dict[str, Whirl] = {}
+    for k, (mode, _) in enumerate(shapes):
+        name, f = str(mode.name), mode.frequency_hz
+        down, up = (moved[k], moved[k]) if beamlike[k] else (-opening[k], opening[k])
+        before = out.get(name, Whirl(np.inf, -np.inf, False))
+        out[name] = Whirl(
+            min(before.down, float(down / f)), max(before.up, float(up / f)), not beamlike[k]
+        )
     return out
 
 
@@ -140,6 +195,27 @@ def _around(fit: Circumference, profiles: Sequence[np.ndarray], heavy: np.ndarra
         size = np.sqrt(heavy[members] / share[members, n])
         out[np.ix_(members, members)] = np.outer(size, size) * (coupled - coupled.T) / 2
     return out
+
+
+def _of_sections(body: Body, shapes: Sequence[Vectors]) -> np.ndarray:
+    """Return G of a body whose sections tilt as one, each with half its polar inertia."""
+    stations = np.linspace(0.0, body.length, STATIONS)
+    tilt = np.zeros((2, STATIONS, len(shapes)))
+    diametral = np.zeros((2, STATIONS, STATIONS))
+    for k, block in enumerate(body.blocks):
+        held = [(place, c) for place, c in enumerate((3, 5)) if c in block.components]
+        columns = [(i, s[k]) for i, s in enumerate(shapes) if k in s]
+        if not held or not columns:
+            continue
+        loads, gram, index = block.section_loads(stations)
+        vectors = np.column_stack([vector for _, vector in columns])
+        motion = np.linalg.lstsq(gram, loads.T @ vectors, rcond=None)[0]
+        for place, component in held:
+            rows = np.flatnonzero(index % 6 == component)
+            tilt[place][:, [i for i, _ in columns]] += motion[rows]
+            diametral[place] = gram[np.ix_(rows, rows)]
+    half = tilt[1].T @ (diametral.sum(axis=0) / 2) @ tilt[0]
+    return half - half.T
 
 
 def _of_masses(body: Body, supports: Supports, shapes: Sequence[Vectors]) -> np.ndarray:

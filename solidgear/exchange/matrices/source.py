@@ -27,6 +27,7 @@ from solidgear.core import (
     show,
 )
 from solidgear.core.body import Supports
+from solidgear.core.body.supports import masses_alone
 from solidgear.core.reduction.craig_bampton import craig_bampton
 from solidgear.core.reduction.port_matrices import PortMatrices
 from solidgear.core.reduction.superelement import Superelement
@@ -195,9 +196,7 @@ def _of_scene(scene: Scene, wanted: Wanted, options: dict) -> PortMatrices:
     model = wanted.model or MODEL
     if not isinstance(model, str):
         raise SolidgearError("a shaft has one model, such as timoshenko; several are for trains")
-    bare = {"bearings": (), "loads": (), "cases": (), "torque_at": None}
-    free = scene.with_changes(**bare, housing=None, housing_axial=None)
-    supports = as_supports(scene if wanted.bearings else free)
+    supports = as_supports(scene) if wanted.bearings else masses_alone(scene)
     return _of_shaft(build(scene, model, **options), supports, wanted, scene.name)
 
 
@@ -226,7 +225,6 @@ def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> Port
                 f"the {body.fidelity} model gives no gyroscopic matrix; use timoshenko or harmonic"
             )
         coupling = couplings(body, supports, _unit_shapes(part))
-        assert coupling is not None
         # d/dt of the kinetic energy counts the coupling twice
         swirl = 2 * wanted.speed * coupling
         notes.append(f"gyroscopic at {wanted.speed:.6g} rad/s about y")

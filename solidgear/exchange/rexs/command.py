@@ -8,7 +8,6 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core import SolidgearError
 from solidgear.exchange.rexs.importing import Imported
 from solidgear.exchange.rexs.study import import_rexs
 from solidgear.show.command import as_typed, command, filled, say

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field, replace
 import numpy as np
 
 from solidgear.core import DOF_NAMES, SolidgearError, System
+from solidgear.core.judge.at_rest import Moved
 from solidgear.core.plain import plain
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import free_directions, seat_motion
@@ -14,7 +15,7 @@ from solidgear.trains.assembly.local import undriven, waves_of
 from solidgear.trains.assembly.local_give import local_lines
 from solidgear.trains.assembly.meshes import mesh_bars, mesh_limit
 from solidgear.trains.assembly.shaft import JUDGE, mix_label
-from solidgear.trains.assembly.spin import spin_cautions
+from solidgear.trains.assembly.spin import spin_moved
 from solidgear.trains.assembly.turn import frequencies_over_a_turn
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.load.contact import Contact
@@ -74,6 +75,7 @@ class TrainModes:
     shapes: np.ndarray = field(default_factory=lambda: np.zeros((0, 0)), repr=False)
     turn: str = ""  #: change over a turn of a carrier, in words
     hidden: str = ""
+    spin: Moved | None = field(default=None, repr=False)  #: what spin moves, which `cautions` say
 
     def as_dict(self) -> dict:
         """Return plain data for JSON."""
@@ -241,6 +243,7 @@ def train_modes(
         for side, model in by_shaft.items()
         if model == JUDGE
     }
+    spin = spin_moved(assembly, system, by_shaft, highest_listed)
     return TrainModes(
         train=train.called,
         models=by_shaft,
@@ -258,7 +261,8 @@ def train_modes(
             line for contact in assembly.contacts.values() for line in wrench_lines(contact)
         ),
         unpublished=train.unpublished(),
-        cautions=(*assembly.cautions, *spin_cautions(assembly, system, by_shaft, highest_listed)),
+        cautions=(*assembly.cautions, *([spin.sentence] if spin else [])),
+        spin=spin,
         undriven={side: families for side, families in undriven_modes.items() if families},
         local=local_lines(assembly, system),
         speeds=train.reference,

@@ -10,7 +10,7 @@ from solidgear.core import pinned
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.local_give import local_lines
 from solidgear.trains.assembly.meshes import mesh_bars
-from solidgear.trains.assembly.spin import spin_cautions
+from solidgear.trains.assembly.spin import spin_moved
 from solidgear.trains.modes.parting import parting_lines
 from solidgear.trains.response.drive import Drive
 from solidgear.trains.response.excitation import meeting_cautions
@@ -68,7 +68,8 @@ def respond(
     columns |= by_name
     by_shaft = assembly.models_by_shaft(models)
     cautions = [*assembly.cautions, *local_lines(assembly, drive.system)]
-    cautions += spin_cautions(assembly, drive.system, by_shaft, highest, turns)
+    spin = spin_moved(assembly, drive.system, by_shaft, highest, turns)
+    cautions += [spin.sentence] if spin else []
     if not forces:
         cautions += meeting_cautions(assembly, drive.pair, together)
     if damping == "literal":

@@ -49,6 +49,7 @@ from solidgear.core import (
     load,
     modes,
     rubin,
+    spin_caution,
 )
 from solidgear.core.body import Supports
 from solidgear.core.judge.correlation import FOREIGN
@@ -142,7 +143,10 @@ def budget(
     progress("what makers know")
     insides = [k for k, open_input in enumerate(study.inputs) if open_input.of]
     asked = questions(study.points, ranges, insides)
-    return Budget(scene=scene.name, questions=asked, **dict(ranges))
+    bars = {str(number.quantity): None for number in ranges.numbers}
+    return Budget(
+        scene=scene.name, questions=asked, cautions=spin_caution(scene, bars), **dict(ranges)
+    )
 
 
 def _studied(
@@ -182,6 +186,7 @@ class Budget(Sheeted, OpenNumbers):
 
     scene: str = ""  #: name of it
     questions: list[Question] = []  #: to makers of bearings, those that narrow most first
+    cautions: list[str] = []  #: sentences on what the numbers leave out
 
 
 class _Study:

@@ -77,6 +77,7 @@ def budget_sheet(ranges: Budget, units: Units = ENGINEERING, asked: Iterable[str
         lead="",
         tables=tables,
         data=ranges.model_dump(mode="json"),
+        cautions=ranges.cautions,
         charts={"budget": partial(budget_chart, ranges, asked=asked)},
         terminal=Terminal(heading=()),
         words={"budget": "Range of every number by every open input."},

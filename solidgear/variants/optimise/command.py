@@ -133,6 +133,7 @@ def optimum_sheet(optimum: Optimum, units: Units = ENGINEERING) -> Sheet:
         charts=charts,
         lines=tables,
         notes=[*sentences(optimum, units)],
+        cautions=optimum.cautions,
         reached=optimum.best is not None,
         terminal=Terminal(
             heading=[optimum.scene],

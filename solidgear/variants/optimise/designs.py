@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from solidgear.core import SolidgearError, Source, read_tolerance
+from solidgear.core import SolidgearError, Source, read_tolerance, spin_caution
 from solidgear.variants.optimise.wish import FIRST, Rows
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
@@ -32,6 +32,7 @@ class Designs:
     solved: str  #: how every design is solved, in words
     unbarred: str  #: why its numbers have no error bars; empty where they have
     names: Callable[[dict[str, Any]], list[str]]  #: numbers of a row that goals may be of
+    cautions: tuple[str, ...] = ()  #: sentences on what the numbers leave out
 
     @property
     def entries(self) -> tuple[Entry, ...]:
@@ -79,7 +80,8 @@ def scene_designs(
         ]
         return [*names_at_rest, *modes_of_row]
 
-    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of)
+    at_rest = tuple(spin_caution(base, dict.fromkeys(names)))
+    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of, at_rest)
 
 
 #: kinds of numbers of a shaft that have columns of their own

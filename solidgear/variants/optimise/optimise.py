@@ -58,6 +58,7 @@ class Optimum(Outcome, Sheeted):
             "followed": list(self.followed),
             "about_bars": self.unbarred or "beside each value",
             "gain": None if self.gain is None else plain(self.gain),
+            "cautions": list(self.cautions),
             "designs": [
                 {
                     "number": design.number,
@@ -184,6 +185,7 @@ def optimise(
         most=most,
         followed=tried.task.variants.followed,
         unbarred=tried.unbarred,
+        cautions=tried.cautions,
         solved=tried.solved,
     )
 

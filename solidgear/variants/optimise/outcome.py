@@ -31,6 +31,7 @@ class Outcome:
     #: why values have no error bars; empty where they have
     unbarred: str = ""
     solved: str = ""  #: how every design was solved, in words
+    cautions: tuple[str, ...] = ()  #: sentences on what the numbers leave out
 
     @property
     def goal(self) -> Wish:

@@ -74,6 +74,7 @@ def sensitivities_sheet(result: Sensitivities, units: Units) -> Sheet:
         charts=charts,
         lines={"sensitivities": lines(result)},
         notes=[*result.notes, *without],
+        cautions=result.cautions,
         terminal=Terminal(heading=[f"{result.title}, by the {result.model} model"]),
         words=dict.fromkeys(charts, "Change of the number for one per cent more of each entry."),
     )

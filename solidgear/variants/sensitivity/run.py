@@ -30,6 +30,7 @@ from solidgear.core import (
     modes,
     nearest,
     pinned,
+    spin_caution,
 )
 from solidgear.core.errors import names_in
 from solidgear.core.loading import part_of
@@ -116,7 +117,10 @@ class Sensitivities(ByName[OfNumber], Sheeted):
 
     sheeted: ClassVar[str] = "variants.sensitivity.command:sensitivities_sheet"
 
-    plain_names = ("title", "model", ("numbers", "of"), "without", ("about_bars", "bars"), "notes")
+    plain_names = (
+        *("title", "model", ("numbers", "of"), "without", ("about_bars", "bars"), "notes"),
+        "cautions",
+    )
     bars = BARS
 
     title: str
@@ -124,6 +128,7 @@ class Sensitivities(ByName[OfNumber], Sheeted):
     of: tuple[OfNumber, ...]
     without: dict[str, str]  #: entries without a derivative, and why
     notes: tuple[str, ...]  #: sentences on bearings held fixed, and on errors of derivatives
+    cautions: tuple[str, ...] = ()  #: sentences on what the numbers leave out
 
     @property
     def by_name(self) -> dict[str, OfNumber]:
@@ -249,7 +254,8 @@ def sensitivities(
         for k, quantity in enumerate(quantities)
     )
     notes = tuple(_notes(scene, levels, of_numbers))
-    return Sensitivities(scene.title or scene.name, model, of_numbers, without, notes)
+    at_rest = tuple(spin_caution(scene, dict.fromkeys(map(str, quantities))))
+    return Sensitivities(scene.title or scene.name, model, of_numbers, without, notes, at_rest)
 
 
 def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:

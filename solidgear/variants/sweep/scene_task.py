@@ -17,6 +17,7 @@ from solidgear.core import (
     as_supports,
     build,
     read_tolerance,
+    spin_caution,
 )
 from solidgear.core.judge.solving import answer_of_body
 from solidgear.core.models.limits import number
@@ -61,6 +62,13 @@ class SceneTask(FileTask):
     def _last(self) -> dict[Any, Settled]:
         """Mesh of the last row, by its shaft."""
         return {}
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on natural frequencies of a shaft whose speed is stated."""
+        if ANSWER not in self.ask:
+            return ()
+        return tuple(spin_caution(self.variants.variant(self.first)))
 
     @property
     def columns(self) -> dict[str, type]:

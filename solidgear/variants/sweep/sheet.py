@@ -10,7 +10,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import build
+from solidgear.core import build, spin_caution
 from solidgear.core.plain import plain
 from solidgear.guards.check import cautions as cautions_on
 from solidgear.show.command import caution
@@ -75,6 +75,8 @@ def _bearings_sheet(result: SweptBearings, units: Units, chart: Path | None) -> 
     """Return the sheet of a sweep of bearings on one body."""
     task, settled = result.task, result.task.settled
     scene = task.variants.scene
+    cautions = cautions_on(scene, build(scene.plain, "timoshenko"), task.model)
+    cautions += spin_caution(scene)
     return _sheet(
         result,
         scene.title or scene.name,
@@ -87,8 +89,8 @@ def _bearings_sheet(result: SweptBearings, units: Units, chart: Path | None) -> 
         f"refused, {result.full} solved in full.",
         notes=[*filter(None, [result.settling]), *over_the_sweep(settled)],
         chart=chart,
-        cautions=cautions_on(scene, build(scene.plain, "timoshenko"), task.model),
-        data=plain(result) | ({} if settled is None else plain(settled)),
+        cautions=cautions,
+        data=plain(result) | {"cautions": cautions} | ({} if settled is None else plain(settled)),
         reached=settled is None or settled.reached,
     )
 
