@@ -187,6 +187,14 @@ MUTATIONS = (
         "tests/test_patches.py::test_what_does_not_balance_moves_a_patch_as_a_rigid_body_and_costs_nothing",
     ),
     Mutation(
+        "bounds: rounding of a rigid motion counts as stiffness",
+        "solidgear/core/kernel/local_problems.py",
+        "_stiffen",
+        "stiffness @ free",
+        "0.0 * free",
+        "tests/test_patches.py::test_what_rounding_leaves_a_rigid_motion_is_no_stiffness",
+    ),
+    Mutation(
         "bounds: of the hats of a cell the last one counts alone",
         "solidgear/core/kernel/local_problems.py",
         "energies",
