@@ -78,7 +78,7 @@ MUTATIONS = (
         "bounds: no cuts towards corners in the richer space",
         "solidgear/core/bounds/richer_space.py",
         "RicherSpace.__init__",
-        "min(1, LAYERS) if kind == 'load' else LAYERS",
+        "LAYERS if place.sharp else min(1, LAYERS)",
         "0",
         "tests/test_bounds.py::test_errors_are_within_bars_and_bars_hardly_wider",
     ),

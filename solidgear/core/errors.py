@@ -51,7 +51,7 @@ class SolidgearError(Exception):
 
 
 class NoBounds(SolidgearError):
-    """A 3D body whose error cannot be bounded, on a finer mesh perhaps."""
+    """A solid whose error cannot be bounded, on a finer mesh perhaps."""
 
     def __init__(self, reason: str, finer_helps: bool = False):
         super().__init__(reason)

@@ -24,6 +24,7 @@ from solidgear.core.bounds.harmonic import (
 )
 from solidgear.core.bounds.refining import HIGHEST, MOST_MESHES, Meshed
 from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.errors import NoBounds
 from solidgear.core.judge.refinement import FUTILE
 from solidgear.core.solve.statics import flexibility
 from solidgear.core.system.modes import SystemModes
@@ -88,8 +89,8 @@ def mesh_errors(
     system: System, scenes: Mapping[str, Scene], bodies: Mapping[str, Body], n: int
 ) -> MeshErrors | None:
     """Compute the errors of the first n elastic frequencies of a system by the meshes of some of
-    the shafts, harmonic ones; None without any, and where teeth drive families of two waves and
-    more.
+    the shafts, harmonic ones; None without any, where teeth drive families of two waves and more,
+    and where nothing is known of the error of one.
     """
     if not bodies:
         return None
@@ -107,7 +108,10 @@ def mesh_errors(
         fields = system.expand(side, shapes)
         if max(fields) >= FURTHER:
             return None
-        by_shaft[side] = vibration_energies(coned(scenes[side]), body, fields, value)
+        try:
+            by_shaft[side] = vibration_energies(coned(scenes[side]), body, fields, value)
+        except NoBounds:
+            return None
     two_more = np.sum([energies.two_more for energies in by_shaft.values()], axis=0)
     one_more = np.sum([energies.one_more for energies in by_shaft.values()], axis=0)
     energy = two_more.diagonal()
@@ -125,11 +129,14 @@ def mesh_errors(
     )
 
 
-def flexibility_errors(side: str, scene: Scene, body: Body) -> MeshErrors:
+def flexibility_errors(side: str, scene: Scene, body: Body) -> MeshErrors | None:
     """Compute the errors of the flexibility of a free harmonic shaft at its ports, under every unit
-    load, balanced by inertia.
+    load, balanced by inertia; None where nothing is known of them.
     """
-    bounds = harmonic_bounds(coned(scene), body, statics=True)
+    try:
+        bounds = harmonic_bounds(coned(scene), body, statics=True)
+    except NoBounds:
+        return None
     by_cell = np.einsum("cii->ic", bounds.of_ports)
     size = flexibility(body).matrix.diagonal()
     loaded = np.flatnonzero((size > ROUNDED * size.max()) & (by_cell.sum(axis=1) > 0))

@@ -22,6 +22,7 @@ import numpy as np
 from solidgear.core import System, coned, pinned
 from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
 from solidgear.core.bounds.safety import LOCAL
+from solidgear.core.errors import NoBounds
 from solidgear.core.system.system import port_forces
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_errors import MeshErrors
@@ -45,7 +46,10 @@ class StaticErrors:
         sides = [side for side, model in state.models.items() if model == JUDGE]
         if any(mesh.local_harmonics for mesh in assembly.train.meshes):
             sides = []
-        self.bounds = {side: self._bounds_of(side) for side in sides}
+        try:
+            self.bounds = {side: self._bounds_of(side) for side in sides}
+        except NoBounds:
+            self.bounds = {}  # nothing is known of the error of one shaft
 
     def _bounds_of(self, side: str) -> HarmonicBounds:
         body = self.assembly.shaft_model(side, JUDGE).body
