@@ -194,7 +194,7 @@ def test_bounds_come_from_where_the_stress_is_sharpest(one):
     by_cell = one.bounds.of_ports.trace(axis1=1, axis2=2)
     corners = richer_space(one.scene, one.body).corners
     names = {place.what for place in corners.values()}
-    assert names == {"shoulder", "seat end of p", "seat end of B"}
+    assert names == {"shoulder", "seat end of p", "seat end of b"}
     near = np.isin(one.body.geometry.meridian.cells, list(corners)).any(axis=0)
     assert not near.all() and by_cell[near].sum() > 0.95 * by_cell.sum()
     assert by_cell.sum() == pytest.approx(np.trace(one.bounds.more), rel=1e-12)

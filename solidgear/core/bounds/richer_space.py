@@ -82,9 +82,9 @@ class RicherSpace:
         for place in self.corners.values():
             if place.within(least) > 1 / 2:
                 raise NoBounds(
-                    f"no mesh resolves the {place.what}, y = {1e3 * place.y:.4g} mm, with so soft a "
-                    "material under it: numbers depend on where it ends to the last micrometre; let "
-                    'it end elsewhere, or use attachment = "average"'
+                    f"no mesh resolves the {place.what} (y = {1e3 * place.y:.4g} mm), so much softer is "
+                    "the material under that seat: to the last micrometre the place decides numbers; "
+                    'let it end elsewhere, or use attachment = "average"'
                 )
         out = np.ones(self.flat.cells.shape[1])
         for vertex, place in self.corners.items():

@@ -142,9 +142,9 @@ def undecided_ends(scene: Scene) -> Iterator[str]:
         share = place.within(detail)
         if share > DECIDING:
             yield (
-                f"the {place.what}, y = {1e3 * place.y:.4g} mm, has the softer material under it: "
-                f"{100 * share:.0f} % of what that end yields lies within {1e3 * detail:.2g} mm, so "
-                "that numbers depend on where exactly it ends; make sure of the place, or use "
+                f"where exactly the {place.what} lies (y = {1e3 * place.y:.4g} mm) decides numbers: the "
+                f"softer material lies under that seat, and {100 * share:.0f} % of what its end gives "
+                f"way comes from within {1e3 * detail:.2g} mm; make sure of the place, or use "
                 'attachment = "average"'
             )
 

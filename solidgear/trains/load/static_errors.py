@@ -46,10 +46,11 @@ class StaticErrors:
         sides = [side for side, model in state.models.items() if model == JUDGE]
         if any(mesh.local_harmonics for mesh in assembly.train.meshes):
             sides = []
+        self.unbounded = ""  #: why nothing is known of the error of one shaft
         try:
             self.bounds = {side: self._bounds_of(side) for side in sides}
-        except NoBounds:
-            self.bounds = {}  # nothing is known of the error of one shaft
+        except NoBounds as error:
+            self.bounds, self.unbounded = {}, str(error)
 
     def _bounds_of(self, side: str) -> HarmonicBounds:
         body = self.assembly.shaft_model(side, JUDGE).body
