@@ -45,7 +45,7 @@ def wedge_exponent(wedges: Sequence[Wedge], held: int = 0) -> float:
     >>> round(wedge_exponent([(0.5 * np.pi, steel), (0.5 * np.pi, rubber)]), 3)
     0.612
     >>> round(wedge_exponent([(0.5 * np.pi, rubber), (0.5 * np.pi, steel)], held=1), 3)
-    0.059
+    0.058
     """
     stiff = max(material.E for _, material in wedges)
     plain = tuple((round(float(a), 9), float(m.E / stiff), float(m.nu)) for a, m in wedges)

@@ -20,11 +20,11 @@ from solidgear.core.bounds.harmonic import (
     VibrationEnergies,
     harmonic_bounds,
     vibration_energies,
+    why_unbounded,
     with_tail,
 )
 from solidgear.core.bounds.refining import HIGHEST, MOST_MESHES, Meshed
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.errors import NoBounds
 from solidgear.core.judge.refinement import FUTILE
 from solidgear.core.solve.statics import flexibility
 from solidgear.core.system.modes import SystemModes
@@ -108,10 +108,10 @@ def mesh_errors(
         fields = system.expand(side, shapes)
         if max(fields) >= FURTHER:
             return None
-        try:
-            by_shaft[side] = vibration_energies(coned(scenes[side]), body, fields, value)
-        except NoBounds:
+        shape = coned(scenes[side])
+        if why_unbounded(shape, body):
             return None
+        by_shaft[side] = vibration_energies(shape, body, fields, value)
     two_more = np.sum([energies.two_more for energies in by_shaft.values()], axis=0)
     one_more = np.sum([energies.one_more for energies in by_shaft.values()], axis=0)
     energy = two_more.diagonal()
@@ -133,10 +133,9 @@ def flexibility_errors(side: str, scene: Scene, body: Body) -> MeshErrors | None
     """Compute the errors of the flexibility of a free harmonic shaft at its ports, under every unit
     load, balanced by inertia; None where nothing is known of them.
     """
-    try:
-        bounds = harmonic_bounds(coned(scene), body, statics=True)
-    except NoBounds:
+    if why_unbounded(coned(scene), body):
         return None
+    bounds = harmonic_bounds(coned(scene), body, statics=True)
     by_cell = np.einsum("cii->ic", bounds.of_ports)
     size = flexibility(body).matrix.diagonal()
     loaded = np.flatnonzero((size > ROUNDED * size.max()) & (by_cell.sum(axis=1) > 0))
