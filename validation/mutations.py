@@ -83,6 +83,24 @@ MUTATIONS = (
         "tests/test_bounds.py::test_errors_are_within_bars_and_bars_hardly_wider",
     ),
     Mutation(
+        "bounds: what two cuts leave of a corner is nothing",
+        "solidgear/core/bounds/richer_space.py",
+        "RicherSpace.unseen",
+        "1 / (1 - left)",
+        "1.0",
+        "tests/test_singular_places.py::test_answers_at_two_tolerances_hold_what_is_right",
+    ),
+    Mutation(
+        "corners: a rigid seat holds the face beyond its end",
+        "solidgear/core/bounds/meeting.py",
+        "meeting",
+        "(before and any((lo < y - tol and y <= hi + tol for lo, hi in seats)), "
+        "after and any((lo - tol <= y and y + tol < hi for lo, hi in seats)))",
+        "(after and any((lo - tol <= y and y + tol < hi for lo, hi in seats)), "
+        "before and any((lo < y - tol and y <= hi + tol for lo, hi in seats)))",
+        "tests/test_singular_places.py::test_the_exponent_at_an_end_is_of_what_meets_there",
+    ),
+    Mutation(
         "bounds: hats of a rigid seat are not one",
         "solidgear/core/bounds/richer_space.py",
         "RicherSpace._seats",
