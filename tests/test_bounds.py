@@ -27,6 +27,7 @@ from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.bounded import bounded
 from solidgear.core.judge.quantities import measure, size
 from solidgear.core.judge.solving import Statics, search_modes
+from solidgear.core.meshing.meridian import CUT_RATIO
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene import STEEL, Fillet, Housing, Material
 from solidgear.core.scene.coned import coned
@@ -37,9 +38,8 @@ MM = 1e-3
 ALUMINIUM = Material(E=7e10, nu=0.34, density=2700)
 #: one cell a band and strip of order 3, and no layers
 FIRST = {"order": 3, "layers": 0, "edge_layers": 0, "relative_size": 4.0, "plain": True}
-#: cuts of fine meshes, which leave 0.15^(2 a) each of what a corner of exponent a costs: of a rigid
-#: seat at a shoulder (a third) a hundredth, of the others less
-CUTS = {"rigid": 4, "re-entrant": 3, "section": 3, "material": 3, "load": 2}
+#: what cuts of fine meshes leave of what a corner costs, at most
+LEFT = 0.01
 MODES = tuple(map(Quantity, ("bending 1", "axial 1", "torsion 1")))
 #: widest that a bound may be, in errors: by what hats overlap and orders do not see, of modes also by
 #: the gap to the next one; 0.9 to 1.1 is measured
@@ -110,8 +110,12 @@ class Solved:
 def fine_mesh(scene, body, **options):
     space = richer_space(coned(scene), body)
     cuts = tuple(
-        (float(space.flat.points[1, v]), float(space.flat.points[0, v]), CUTS[kind])
-        for v, (kind, _) in space.corners.items()
+        (
+            float(space.flat.points[1, v]),
+            float(space.flat.points[0, v]),
+            int(np.ceil(np.log(LEFT) / (2 * place.exponent * np.log(CUT_RATIO)))),
+        )
+        for v, place in space.corners.items()
     )
     return sg.build(scene, "harmonic", **{**FIRST, "order": 7}, cuts=cuts, **options)
 
@@ -189,7 +193,8 @@ def test_bounds_come_from_where_the_stress_is_sharpest(one):
     """Of a stepped shaft from the cells at the shoulder and at the ends of loaded seats."""
     by_cell = one.bounds.of_ports.trace(axis1=1, axis2=2)
     corners = richer_space(one.scene, one.body).corners
-    assert {kind for kind, _ in corners.values()} == {"re-entrant", "load"}
+    names = {place.what for place in corners.values()}
+    assert names == {"shoulder", "seat end of p", "seat end of b"}
     near = np.isin(one.body.geometry.meridian.cells, list(corners)).any(axis=0)
     assert not near.all() and by_cell[near].sum() > 0.95 * by_cell.sum()
     assert by_cell.sum() == pytest.approx(np.trace(one.bounds.more), rel=1e-12)

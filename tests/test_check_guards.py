@@ -86,6 +86,15 @@ def coupled(share: float) -> np.ndarray:
     return k
 
 
+def on_joint(gap: float) -> Scene:
+    """A plastic gear body on the end of a shaft, its rigid point so far from the joint, m."""
+    plain = scene(((0.08, D), (0.22, D)), port=(0.04, 0.0, 0.08 - gap))
+    gear, shaft = plain.segments
+    gear = gear.with_changes(material=STEEL.with_changes(E=3e9, nu=0.38))
+    port = plain.port.with_changes(attachment="rigid")
+    return plain.with_changes(segments=(gear, shaft), port=port)
+
+
 def scene(
     parts=((0.08, 0.084), (0.22, D)),
     seats=((0.13, 0.03), (0.26, 0.03)),
@@ -485,6 +494,13 @@ CASES = {
         "rigid seats at 'p', 'b0', 'b1'",
         scene(attachment="rigid"),
         scene(),
+        of=SOLIDS,
+    ),
+    "rigid point that ends on a joint": Case(
+        "seats_on_joints",
+        "seat end of p at a change of material lies (y = 80 mm)",
+        on_joint(0.0),
+        on_joint(1e-4),
         of=SOLIDS,
     ),
     "hex8": Case(

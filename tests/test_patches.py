@@ -135,6 +135,18 @@ def test_what_does_not_balance_moves_a_patch_as_a_rigid_body_and_costs_nothing(s
     assert found == pytest.approx(stretches**2 / stiffness, rel=ROUNDING, abs=ROUNDING / stiffness)
 
 
+@pytest.mark.parametrize("rounding", [-2e-13, 2e-13])
+def test_what_rounding_leaves_a_rigid_motion_is_no_stiffness(rounding):
+    """A spring whose first unknown moves both ends: condensing leaves it a sixteenth digit of what was
+    there, of either sign.
+    """
+    stiffness, none = 3.0, np.zeros((1, 1))
+    matrix = stiffness * np.array([[rounding, 0.0], [0.0, 1.0]])
+    cell = Cell([0], np.array([0, 1]), matrix, np.array([[[0.4], [1.0]]]), none)
+    (found,) = energies([cell], np.array([[1.0], [0.0]])).ravel()
+    assert found == pytest.approx(1 / stiffness, rel=ROUNDING)
+
+
 # --------------------------------------------------------------------------- functions of cells
 def test_functions_of_a_cell_are_told_by_their_values_and_have_these_slopes():
     """A polynomial of the order in both directions, and another one by its derivatives."""

@@ -187,7 +187,7 @@ def test_what_is_not_reached_is_given_with_its_bar_and_an_exit_code(run, two_mes
 
 def test_what_is_not_reached_is_said(run, two_meshes):
     code, out, _ = run("stiffness", SCENE, "--tol", "1e-5")
-    assert code == 3 and "Not reached: " in out and "2 meshes was too coarse" in out
+    assert code == 3 and "Not reached: " in out and "2 meshes were too coarse" in out
     assert "K_thx" in out and "compliance, engineering units" in out
 
 

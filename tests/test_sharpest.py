@@ -8,7 +8,7 @@ from scipy.optimize import brentq
 
 from solidgear import Port, Scene, Segment
 from solidgear.core.bounds import wedge
-from solidgear.core.bounds.sharpest import sharpest_exponent
+from solidgear.core.bounds.singular_places import sharpest_exponent
 from solidgear.core.bounds.wedge import wedge_exponent
 from solidgear.core.meshing.corners import corner_exponent
 from solidgear.core.scene import Material
@@ -131,7 +131,7 @@ BODIES = {
     "sleeve": (
         [(50, 20, RUBBER), (50, 30, STEEL)],
         None,
-        corner_exponent(1.5 * HALF),  # sharper than the joint in it, which is nearly clamped
+        wedge_exponent([(QUARTER, RUBBER), (HALF, STEEL)]),  # less sharp than one of steel
     ),
     "soft sleeve": (
         [(50, 20, STEEL), (50, 30, RUBBER)],

@@ -22,6 +22,7 @@ from solidgear.guards.check import check_scene
 from solidgear.guards.probe import Probe
 
 SCENES = Path(__file__).parent / "scenes"
+SHAFTS = Path(__file__).parent / "found" / "shafts"
 COARSE = {"order": 3, "layers": 1, "edge_layers": 0, "relative_size": 4.0}
 
 
@@ -261,3 +262,16 @@ def test_a_shaft_that_is_one_rigid_seat_is_free():
     body = sg.build(sg.Scene.from_parts([rod], bearings=[held]), "timoshenko")
     # its stiffness is rounding alone, which is small beside what its mass would feel
     assert body.rigid_residual() < 1e-9
+
+
+# --------------------------------------------------------------------------- statics
+def test_a_rim_a_twentieth_of_the_diameter_wide_is_solved():
+    """A shaft pinned on the rim of its end, whose first cell is ten times as high as long."""
+    found = sg.deflect(SHAFTS / "overhang_inch.toml", "harmonic").judge.shafts[0].ports
+    inch = 25.4e-3
+    # P a (L^2 - a^2) / (6 L E I); beyond the bearing nothing bends the shaft
+    slope = 400 * 9 * (23**2 - 9**2) / (6 * 23 * 30e6 * np.pi * 2**4 / 64)
+    # seats 0.2 inches wide are no points: 1e-3 of what the shaft does
+    assert found["coupling"][3] == pytest.approx(slope, rel=1e-3)
+    assert found["R"][3] == pytest.approx(slope, rel=1e-3)
+    assert found["coupling"][2] == pytest.approx(7 * inch * slope, rel=1e-3)

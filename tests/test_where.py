@@ -8,11 +8,11 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.bounds.refining import Meshed
+from solidgear.core.bounds.singular_places import singular_places
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.cell_places import ELSEWHERE
 from solidgear.core.judge.quantities import usual
 from solidgear.core.judge.record import PlaceRecord, WhereRecord
-from solidgear.core.judge.singular_places import singular_places
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.where import error_places as places_of

@@ -8,10 +8,10 @@ from PIL import Image
 from skfem import MeshHex
 
 import solidgear as sg
+from solidgear.core.bounds.singular_places import Place
 from solidgear.core.bounds.solid import solid_bounds
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.cell_places import ELSEWHERE, CellPlaces, place_of_most
-from solidgear.core.judge.singular_places import Place
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.where import error_places, least_certain, map_error, recorded_places

@@ -86,9 +86,27 @@ MUTATIONS = (
         "bounds: no cuts towards corners in the richer space",
         "solidgear/core/bounds/richer_space.py",
         "RicherSpace.__init__",
-        "min(1, LAYERS) if kind == 'load' else LAYERS",
+        "LAYERS if place.sharp else min(1, LAYERS)",
         "0",
         "tests/test_bounds.py::test_errors_are_within_bars_and_bars_hardly_wider",
+    ),
+    Mutation(
+        "bounds: what two cuts leave of a corner is nothing",
+        "solidgear/core/bounds/richer_space.py",
+        "RicherSpace.unseen",
+        "1 / (1 - left)",
+        "1.0",
+        "tests/test_singular_places.py::test_answers_at_two_tolerances_hold_what_is_right",
+    ),
+    Mutation(
+        "corners: a rigid seat holds the face beyond its end",
+        "solidgear/core/bounds/meeting.py",
+        "meeting",
+        "(before and any((lo < y - tol and y <= hi + tol for lo, hi in seats)), "
+        "after and any((lo - tol <= y and y + tol < hi for lo, hi in seats)))",
+        "(after and any((lo - tol <= y and y + tol < hi for lo, hi in seats)), "
+        "before and any((lo < y - tol and y <= hi + tol for lo, hi in seats)))",
+        "tests/test_singular_places.py::test_the_exponent_at_an_end_is_of_what_meets_there",
     ),
     Mutation(
         "bounds: hats of a rigid seat are not one",
@@ -193,6 +211,14 @@ MUTATIONS = (
         "_orthonormal(rigid[ids] / root[:, None])",
         "_orthonormal(0.0 * rigid[ids])",
         "tests/test_patches.py::test_what_does_not_balance_moves_a_patch_as_a_rigid_body_and_costs_nothing",
+    ),
+    Mutation(
+        "bounds: rounding of a rigid motion counts as stiffness",
+        "solidgear/core/kernel/local_problems.py",
+        "_stiffen",
+        "stiffness @ free",
+        "0.0 * free",
+        "tests/test_patches.py::test_what_rounding_leaves_a_rigid_motion_is_no_stiffness",
     ),
     Mutation(
         "bounds: of the hats of a cell the last one counts alone",

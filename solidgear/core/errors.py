@@ -57,7 +57,7 @@ class NoSuchName(SolidgearError, KeyError):
 
 
 class NoBounds(SolidgearError):
-    """A 3D body whose error cannot be bounded, on a finer mesh perhaps."""
+    """A solid whose error cannot be bounded, on a finer mesh perhaps."""
 
     def __init__(self, reason: str, finer_helps: bool = False):
         super().__init__(reason)

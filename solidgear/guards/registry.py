@@ -40,6 +40,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         lumped.frequency_range,
         elements.narrow_seat,
         elements.rigid_seats,
+        elements.seats_on_joints,
         elements.linear_elements,
         elements.hexahedra_at_fillets,
         elements.nearly_incompressible,

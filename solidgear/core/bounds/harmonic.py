@@ -28,6 +28,7 @@ from solidgear.core.bounds.clusters import ROOM, cluster_of, clusters, lower_end
 from solidgear.core.bounds.loads import Loading
 from solidgear.core.bounds.patches import local_energies
 from solidgear.core.bounds.richer_space import RicherSpace
+from solidgear.core.errors import NoBounds
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.statics import flexibility, twin_matrix
 
@@ -101,6 +102,15 @@ def least_frequency(lowest: Mapping[str, float], mode: Mode) -> float | None:
 def richer_space(scene: Scene, body: Body) -> RicherSpace:
     """Return the richer space of a harmonic body, kept with it."""
     return body.cache.get(RicherSpace, lambda: RicherSpace(scene, body))
+
+
+def why_unbounded(scene: Scene, body: Body) -> str:
+    """Return the reason why the error of a harmonic body has no bounds; empty where it has."""
+    try:
+        richer_space(scene, body).unseen()
+    except NoBounds as error:
+        return str(error)
+    return ""
 
 
 def with_tail(two_more: float, one_more: float) -> float:

@@ -20,8 +20,9 @@ import numpy as np
 from solidgear.core.body import Body
 from solidgear.core.bounds.harmonic import richer_space
 from solidgear.core.bounds.lines import Lines, place_of
-from solidgear.core.meshing.corners import corner_exponent
-from solidgear.core.meshing.meridian import CUT_RATIO
+from solidgear.core.bounds.meeting import least_side
+from solidgear.core.meshing.cells import ENDS
+from solidgear.core.meshing.meridian import CUT_RATIO, Meridian
 from solidgear.core.scene.coned import coned
 
 if TYPE_CHECKING:
@@ -41,15 +42,14 @@ BY_CUT, BY_ORDER = 0.08, 9.0
 POWER = 2.0
 #: share of what is aimed at that the error away from corners may take before orders are raised
 SMOOTH = 1 / 3
-#: cuts that one step may add to a corner, orders to the mesh, and cuts of a corner in all
-CUTS, ORDERS, MOST_CUTS = 4, 2, 12
+#: cuts that one step may add to a corner as sharp as a crack or less, and orders to the mesh
+CUTS, ORDERS = 4, 2
+#: exponent of displacement at a crack
+CRACK = 0.5
 #: largest cell of the first mesh, in local outer radii
 SIZE = 4.0
 #: orders that left more than this each of an error bar are no longer the cure
 SLOW = 0.5
-
-#: exponents of displacement at the ends of rigid and of averaged seats, planes and joined materials
-EXPONENT = {"rigid": 0.5, "load": 1.0, "section": 1.0, "material": 0.7}
 
 
 @dataclass(frozen=True)
@@ -90,7 +90,14 @@ class Corners:
         self.raised = 0  #: orders that the mesh is raised by
         cells = body.geometry.meridian.cells  # type: ignore[union-attr]
         corners = richer_space(coned(scene), body).corners
-        self.exponents = {v: corner_strength(*corner) for v, corner in corners.items()}
+        self.exponents = {v: place.exponent for v, place in corners.items()}
+        flat = body.geometry.meridian  # type: ignore[union-attr]
+        #: cuts that corners have room for, and those of one step: more where each leaves more
+        self.room = {v: _cuts_to(least_side(scene.length), flat, v) for v in corners}
+        self._most = {
+            v: min(math.ceil(CUTS * max(1.0, CRACK / a)), self.room[v])
+            for v, a in self.exponents.items()
+        }
         self.beside = {v: (cells == v).any(axis=0) for v in corners}
         at_corner = np.any([np.zeros(len(score), bool), *self.beside.values()], axis=0)
         self.away = np.where(at_corner, 0.0, score)  #: (ne,) what cells away from corners leave
@@ -105,12 +112,18 @@ class Corners:
         """(ne,) what cells beside corners leave: as much as the least cut of their corners does."""
         return np.max([np.zeros(len(self.near)), *map(self._beside, self.exponents)], axis=0)
 
-    def _beside(self, vertex: int) -> np.ndarray:
-        """Return (ne,) what cells beside one corner leave by it: beside a sharper one between all, and as
-        much as if they had been cut once.
+    @property
+    def least(self) -> float:
+        """What cells beside corners leave once all of them are cut as often as there is room."""
+        beside = [self._beside(v, self.room[v]) for v in self.exponents]
+        return float(np.max([np.zeros(len(self.near)), *beside], axis=0).sum())
+
+    def _beside(self, vertex: int, cuts: int | None = None) -> np.ndarray:
+        """Return (ne,) what cells beside one corner leave by it after so many cuts: beside a sharper one
+        between all, and as much as if they had been cut once.
         """
         exponent = self.exponents[vertex]
-        cut = CUT_RATIO ** (2 * exponent * self.cuts[vertex])
+        cut = CUT_RATIO ** (2 * exponent * (self.cuts[vertex] if cuts is None else cuts))
         by_order = self._order / (self._order + self.raised)
         left = cut * by_order ** min(4 * exponent, POWER)
         dull = CUT_RATIO ** (exponent - self._sharpest)
@@ -124,7 +137,7 @@ class Corners:
         leaves = {
             v: float(left[self.beside[v] & (self._beside(v) >= left)].sum())
             for v in self.exponents
-            if self.cuts[v] < CUTS
+            if self.cuts[v] < self._most[v]
         }
         return max(leaves.items(), key=itemgetter(1), default=(None, 0.0))
 
@@ -139,16 +152,30 @@ class Corners:
         return float(self.away.sum() + BY_CUT * self.near[beside_cut].sum())
 
 
-def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: float) -> Meshed:
+def _cuts_to(least: float, flat: Meridian, vertex: int) -> int:
+    """Return how often cells at a vertex may be cut until a side there is as short as the least, m."""
+    sides = flat.cells[np.array(ENDS)].transpose(1, 0, 2).reshape(2, -1)
+    first, second = flat.points[:, sides[:, (sides == vertex).any(axis=0)]].transpose(1, 0, 2)
+    shortest = float(np.linalg.norm(second - first, axis=0).min())
+    return max(0, math.floor(math.log(shortest / least) / -math.log(CUT_RATIO)))
+
+
+def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: float) -> Meshed | None:
     """Return the next mesh after the one that the body was built on, from the share of every cell
     (ne,) in the relative error bar of the result that needs it most, and a relative tolerance: what
-    leaves most is cut, or the order raised, until what is left is predicted within the tolerance.
+    leaves most is cut, or the order raised, until what is left is predicted within the tolerance, or
+    next to what corners leave that have no room for more cuts; None where no order is left to raise.
     """
     mesh_of = body.geometry
     lines = Lines(mesh_of.uncut, mesh.across)  # type: ignore[union-attr]
     corners = Corners(scene, body, score, mesh.order)
     rate, cure = _rate(mesh, corners.smooth())
-    aim, most_orders = AIM * tol, min(ORDERS, HIGHEST - mesh.order) if cure else 0
+    floor = corners.least
+    if floor > max(tol, AIM * score.sum()):
+        # what is smooth in the cells beside such a corner costs as well
+        higher = min(mesh.order + ORDERS, HIGHEST)
+        return replace(mesh, order=higher) if higher > mesh.order else None
+    aim, most_orders = max(AIM * tol, floor / AIM), min(ORDERS, HIGHEST - mesh.order) if cure else 0
     while (smooth := corners.smooth() / rate**corners.raised) + corners.left.sum() > aim:
         vertex, leaves = corners.worst()
         if corners.raised < most_orders and (vertex is None or smooth > SMOOTH * aim):
@@ -163,7 +190,7 @@ def refined(scene: Scene, body: Body, mesh: Meshed, score: np.ndarray, tol: floa
         place = place_of(mesh_of.meridian.points[:, vertex])  # type: ignore[union-attr]
         if place not in cuts:
             lines.cut_slender(place)
-        cuts[place] = min(cuts.get(place, 0) + corners.cuts[vertex], MOST_CUTS)
+        cuts[place] = cuts.get(place, 0) + corners.cuts[vertex]
     cut = (cuts, lines.points) != (dict(mesh.cuts), list(mesh.across))
     orders = corners.raised if cut else max(corners.raised, 1)
     return replace(
@@ -184,19 +211,3 @@ def _rate(mesh: Meshed, smooth: float) -> tuple[float, bool]:
         return BY_ORDER, True
     fallen = (mesh.smooth / smooth) ** (1 / mesh.raised)
     return min(max(fallen, 1 / SLOW), BY_ORDER), fallen >= 1 / SLOW
-
-
-def corner_strength(kind: str, angle: float) -> float:
-    """Return the exponent of displacement at a corner (Williams 1952) of a kind of
-    :func:`solidgear.core.bounds.richer_space.singular_vertices` and an angle of material, rad: the less, the
-    sharper.
-
-    Examples
-    --------
-    >>> round(corner_strength("re-entrant", 3 * math.pi / 2), 3)
-    0.544
-    """
-    exponent = EXPONENT.get(kind, 1.0)
-    if kind == "rigid" and angle > math.pi + 0.02:
-        return 1 / 3
-    return min(exponent, corner_exponent(angle)) if angle > math.pi else exponent

@@ -14,6 +14,9 @@ from scipy.sparse.csgraph import connected_components
 
 from solidgear.core.body import Block, Body, Port
 from solidgear.core.bounds.lines import Lines, place_of
+from solidgear.core.bounds.meeting import SAME, least_side
+from solidgear.core.bounds.singular_places import Place, singular_places
+from solidgear.core.errors import NoBounds
 from solidgear.core.kernel.lobatto import at_nodes, products
 from solidgear.core.meshing.cells import ENDS
 from solidgear.core.meshing.corner_layers import cut_towards
@@ -57,10 +60,9 @@ class RicherSpace:
         self.rich = self.order + EXTRA  #: order of the richer space
         self._work = Work(scene, geometry)
         self._to_products()
-        self.corners = singular_vertices(scene, body.ports, self.flat, self._corner_tangents())
-        cuts = {
-            v: min(1, LAYERS) if kind == "load" else LAYERS for v, (kind, _) in self.corners.items()
-        }
+        #: singular places by the vertices there
+        self.corners = corner_places(scene, body.ports, self.flat)
+        cuts = {v: LAYERS if place.sharp else min(1, LAYERS) for v, place in self.corners.items()}
         lines = Lines(self.flat, ())
         for vertex in self.corners if LAYERS else ():
             # the effect of a corner of a slender cell reaches from its width to its length
@@ -69,6 +71,29 @@ class RicherSpace:
         self.pieces = cut_towards(self.flat.cells.T, self.flat.points.T, cuts, CUT_RATIO, across)
         self._number()
         self._seats()
+
+    def unseen(self) -> np.ndarray:
+        """Return (ne,) the energy of an error over what the richer space sees of it, in cells of the
+        mesh: of the cost of a corner of exponent a all but ``q^(2 a n)``, which n cuts of ratio q leave.
+        NoBounds where cells cannot be so small that less than half of that cost remains.
+        """
+        geometry: HarmonicMesh = self.body.geometry  # type: ignore[assignment]
+        least = least_side(self.scene.length)
+        for place in self.corners.values():
+            if place.within(least) > 1 / 2:
+                raise NoBounds(
+                    f"no mesh resolves the {place.what} (y = {1e3 * place.y:.4g} mm), so much softer is "
+                    "the material under that seat: to the last micrometre the place decides numbers; "
+                    'let it end elsewhere, or use attachment = "average"'
+                )
+        out = np.ones(self.flat.cells.shape[1])
+        for vertex, place in self.corners.items():
+            if place.sharp:
+                around = geometry.parent[(self.flat.cells == vertex).any(axis=0)]
+                left = CUT_RATIO ** (2 * place.exponent * LAYERS)
+                beside = np.isin(geometry.parent, around)
+                out[beside] = np.maximum(out[beside], 1 / (1 - left))
+        return out
 
     def _to_products(self) -> None:
         """Set the matrices from the functions of the element to products of Lobatto's, by cell, and
@@ -88,17 +113,6 @@ class RicherSpace:
                 for k, cell in enumerate(kind.cells):
                     self.curved[int(cell)] = inverse @ place[:, k].T
         self.bent = np.isin(np.arange(count), list(self.curved))
-
-    def _corner_tangents(self) -> np.ndarray:
-        """Return (ne, 4, 2, 2) derivatives of position (last) along both coordinates at the
-        corners.
-        """
-        corners = np.array([[0.0, 0.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])
-        out = np.einsum("dbq,ebx->eqdx", products(1, corners)[1], self.straight)
-        slope = products(self.order, corners)[1]
-        for cell, shape in self.curved.items():
-            out[cell] = np.einsum("dbq,bx->qdx", slope, shape)
-        return out
 
     def coefficients(self, block: Block, family: Family, u: np.ndarray) -> np.ndarray:
         """Return (ne, (order + 1)^2, c, k) coefficients of (n, k) displacements of a block, in
@@ -256,78 +270,16 @@ def inverted(jac: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
     return out / det[:, None, None], det
 
 
-#: rad beyond a straight angle from which on a corner is re-entrant
-BENT = 0.02
-
-
-def singular_vertices(
-    scene: Scene, ports: Sequence[Port], flat: Meridian, tangents: np.ndarray
-) -> dict[int, tuple[str, float]]:
-    """Return the vertices of a mesh at which displacements are not smooth: kind, and angle of the
-    material there, rad.
-
-    Kinds are ``re-entrant``, ``rigid`` (end of a seat that cannot deform), ``section`` (a plane
-    that carries a load), ``material`` or ``load`` (end of another seat). `tangents` (ne, 4, 2, 2)
-    are the derivatives of position (last) along both coordinates at the corners of every cell.
+def corner_places(scene: Scene, ports: Sequence[Port], flat: Meridian) -> dict[int, Place]:
+    """Return the singular places of a scene by the vertices of a mesh that lie there; stations are tied
+    as ports are.
     """
-    points, tol = flat.points, 1e-9 * scene.length
-    outside = _outside(flat)
-    angle = np.zeros(points.shape[1])
-    # towards the next and the previous corner, in the sense of the walk
-    for corner, (first, second, turn) in enumerate(
-        ((0, 1, (1, 1)), (1, 0, (1, -1)), (0, 1, (-1, -1)), (1, 0, (-1, 1)))
-    ):
-        u = tangents[:, corner, first] * turn[0]
-        v = tangents[:, corner, second] * turn[1]
-        cross = np.abs(u[:, 0] * v[:, 1] - u[:, 1] * v[:, 0])
-        np.add.at(angle, flat.cells[corner], np.arctan2(cross, np.einsum("ix,ix->i", u, v)))
-    out = {int(v): "re-entrant" for v in np.flatnonzero(outside & (angle > np.pi + BENT))}
-    stations = {s.name: s for s in scene.stations}
-    surface = np.zeros(points.shape[1], bool)
-    surface[flat.cells[1:3, flat.outer]] = True
-    for port in ports:
-        station = stations[port.name]
-        section = port.attachment == "section"
-        kind = "load" if port.attachment == "average" else port.attachment
-        candidates = outside if section else surface
-        for y in [station.y] if section else [station.lo, station.hi]:
-            for number in np.flatnonzero(candidates & (np.abs(points[1] - y) < tol)):
-                vertex = int(number)
-                # a rigid seat that ends in a corner is the sharpest of all
-                if kind == "rigid" or out.get(vertex, "load") == "load":
-                    out[vertex] = kind
-    for vertex in _joined(scene, flat):
-        if outside[vertex]:
-            out.setdefault(vertex, "material")
-    return {vertex: (kind, float(angle[vertex])) for vertex, kind in out.items()}
-
-
-def _outside(flat: Meridian) -> np.ndarray:
-    """Return a mask of the vertices on the surface, the ends of the axis included where faces meet
-    it.
-    """
-    sides = np.sort(
-        np.concatenate([flat.cells[[a, b]] for a, b in ((0, 1), (1, 2), (2, 3), (3, 0))], axis=1),
-        axis=0,
-    )
-    edges, times = np.unique(sides, axis=1, return_counts=True)
-    tol = 1e-9 * flat.points[0].max()
-    on_axis = (np.abs(flat.points[0][edges]) < tol).all(axis=0)
-    out = np.zeros(flat.points.shape[1], bool)
-    out[edges[:, (times == 1) & ~on_axis]] = True
+    stations = {station.name: station for station in scene.stations}
+    ties = [(stations[port.name], port.attachment) for port in ports]
+    out = {}
+    for place in singular_places(scene, ties):
+        away = np.hypot(flat.points[0] - place.r, flat.points[1] - place.y)
+        vertex = int(away.argmin())
+        if not place.round and away[vertex] <= SAME * scene.length:
+            out[vertex] = place
     return out
-
-
-def _joined(scene: Scene, flat: Meridian) -> list[int]:
-    """Return the vertices at which materials of different stiffness meet."""
-    laws = [(s.material.shear_modulus, s.material.nu) for s in scene.segments]
-    number = {law: k for k, law in enumerate(dict.fromkeys(laws))}
-    if len(number) == 1:
-        return []
-    law_of_cell = np.array([number[laws[s]] for s in flat.segment])
-    least = np.full(flat.points.shape[1], len(laws))
-    most = np.full(flat.points.shape[1], -1)
-    for corner in range(4):
-        np.minimum.at(least, flat.cells[corner], law_of_cell)
-        np.maximum.at(most, flat.cells[corner], law_of_cell)
-    return [int(v) for v in np.flatnonzero(least < most)]

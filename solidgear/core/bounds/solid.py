@@ -38,7 +38,7 @@ from solidgear.core.bounds.harmonic import (
 )
 from solidgear.core.bounds.narrow import RIGID, mesh_of, narrow_share
 from solidgear.core.bounds.safety import ACROSS, LEAST, LOCKING, MISSING, SLOWER
-from solidgear.core.bounds.sharpest import sharpest_exponent
+from solidgear.core.bounds.singular_places import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import NoBounds
 from solidgear.core.kernel.room import MB

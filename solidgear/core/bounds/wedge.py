@@ -13,7 +13,7 @@ Mech. 38, 377).
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
@@ -26,15 +26,13 @@ if TYPE_CHECKING:
 
 #: order of the polynomials along a wedge
 ORDER = 12
-#: smaller roots are those of translations, which rounding parts: no wedge comes near
-RIGID = 0.05
 #: angle of a wedge, rad, and its material
 Wedge = tuple[float, "Material"]
 
 
-def wedge_exponent(wedges: Sequence[Wedge], held: bool = False) -> float:
-    """Return the least exponent of displacement, its real part, at the tip of wedges side by side with
-    free outer faces, the first one held if so wanted; one at most.
+def wedge_exponent(wedges: Sequence[Wedge], held: int = 0) -> float:
+    """Return the least exponent of displacement, its real part, at the tip of wedges side by side; one
+    at most. Of the two outer faces none, the first or both are held, by one rigid body.
 
     Examples
     --------
@@ -46,18 +44,33 @@ def wedge_exponent(wedges: Sequence[Wedge], held: bool = False) -> float:
     0.5445
     >>> round(wedge_exponent([(0.5 * np.pi, steel), (0.5 * np.pi, rubber)]), 3)
     0.612
+    >>> round(wedge_exponent([(0.5 * np.pi, rubber), (0.5 * np.pi, steel)], held=1), 3)
+    0.058
     """
     stiff = max(material.E for _, material in wedges)
-    plain = tuple((float(a), float(m.E / stiff), float(m.nu)) for a, m in wedges)
+    plain = tuple((round(float(a), 9), float(m.E / stiff), float(m.nu)) for a, m in wedges)
     return _exponent(plain, held)
 
 
 @lru_cache(maxsize=256)
-def _exponent(wedges: tuple[tuple[float, float, float], ...], held: bool) -> float:
-    in_plane = _matrices([(angle, _plane(e, nu)) for angle, e, nu in wedges], 2)
-    across = _matrices([(angle, _across(e, nu)) for angle, e, nu in wedges], 1)
-    roots = np.concatenate([_roots(*in_plane, 2 * held), _roots(*across, 1 * held)]).real
-    return float(min(roots[roots > RIGID].min(), 1.0))
+def _exponent(wedges: tuple[tuple[float, float, float], ...], held: int) -> float:
+    roots = [
+        _exponents(_matrices([(angle, law(e, nu)) for angle, e, nu in wedges], count), count, held)
+        for law, count in LAWS
+    ]
+    return float(min(*np.concatenate(roots), 1.0))
+
+
+def _exponents(matrices: Sequence[np.ndarray], count: int, held: int) -> np.ndarray:
+    """Return the real parts of the exponents above zero, of displacements of `count` components.
+
+    Roots come in pairs of either sign. Where nothing is held, translations and their logarithms are
+    roots at zero, which rounding parts.
+    """
+    roots = _roots(*matrices, count * held)
+    if not held:
+        roots = roots[np.argsort(np.abs(roots))][2 * count :]
+    return roots.real[roots.real > 0]
 
 
 #: elasticity, and the strains of functions that do and that do not grow with the exponent: of value
@@ -82,6 +95,10 @@ def _across(e: float, nu: float) -> _Law:
     return elasticity, np.array([[1.0], [0]]), np.zeros((2, 1)), np.array([[0.0], [1]])
 
 
+#: strains in the plane and across it, and the components of displacement that make them
+LAWS: tuple[tuple[Callable[[float, float], _Law], int], ...] = ((_plane, 2), (_across, 1))
+
+
 def _matrices(
     wedges: Iterable[tuple[float, _Law]], components: int
 ) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -96,7 +113,10 @@ def _matrices(
         by_slope = np.einsum("qn,sc->qsnc", slope / angle, turning)
         steady = (by_value + by_slope).reshape(len(points), len(elasticity), -1)
         rising = np.einsum("qn,sc->qsnc", value, growing).reshape(steady.shape)
-        places = np.r_[n, n + 1, len(wedges) + 1 + (ORDER - 1) * n + np.arange(ORDER - 1)]
+        # both outer faces first
+        faces = [0, *range(2, len(wedges) + 1), 1]
+        inside = len(wedges) + 1 + (ORDER - 1) * n + np.arange(ORDER - 1)
+        places = np.r_[faces[n], faces[n + 1], inside]
         rows = (components * places[:, None] + np.arange(components)).ravel()
         for matrix, left, right in ((m, rising, rising), (c, steady, rising), (k, steady, steady)):
             part = np.einsum("q,qsi,st,qtj->ij", angle * weights, left, elasticity, right)
@@ -105,7 +125,7 @@ def _matrices(
 
 
 def _roots(m: np.ndarray, c: np.ndarray, k: np.ndarray, held: int) -> np.ndarray:
-    """Return the exponents, with as many unknowns at the first face held."""
+    """Return the exponents, with so many of the unknowns held."""
     m, c, k = (matrix[held:, held:] for matrix in (m, c, k))
     left = np.linalg.solve(m, np.hstack([k, c - c.T]))
     size = len(m)

@@ -13,9 +13,9 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body
-from solidgear.core.judge.singular_places import Singular, singular_places
+from solidgear.core.bounds.singular_places import Singular, singular_places
 from solidgear.core.judge.solid_places import solid_places
-from solidgear.core.scene.shaft import without_axis
+from solidgear.core.scene.shaft import attached_stations, without_axis
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene
@@ -60,7 +60,8 @@ class CellPlaces:
         if hasattr(geometry, "meridian"):
             meridian = geometry.meridian
             points = np.vstack([meridian.points, 0 * meridian.points[0]])
-            return cls(singular_places(scene, attachments), points, meridian.cells, True, True)
+            places = singular_places(scene, attached_stations(scene.stations, attachments))
+            return cls(places, points, meridian.cells, True, True)
         mesh = geometry.solved.mesh
         places = solid_places(scene, body, attachments)
         return cls(places, mesh.p, mesh.t, False, not without_axis(scene))

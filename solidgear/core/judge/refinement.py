@@ -108,6 +108,7 @@ class Refinement:
     last: Solved | None = None
     without_bars: str = ""  #: why the last mesh has none
     finer_helps: bool = False  #: whether a finer mesh may have some nevertheless
+    no_room: bool = False  #: whether cells where most of the error bar comes from cannot be smaller
     #: bound on the change by couplings of families that were left out, relative
     left_out: float = 0.0
     mesh: Meshed = field(init=False)  #: of a harmonic solid, the first mesh and later the last
@@ -258,9 +259,12 @@ class Refinement:
             if self.last is None or self.last.score is None:
                 return reason
             return f"{reason}; most of the error bar comes from {self.worst_place()}"
+        place = f"most of the error bar comes from {self.worst_place()}"
+        if self.no_room:
+            return f"{place}, where cells cannot be smaller"
         count = len(self.levels)
-        tried = "one mesh" if count == 1 else f"{count} meshes"
-        return f"{tried} was too coarse; most of the error bar comes from {self.worst_place()}"
+        tried = "one mesh was" if count == 1 else f"{count} meshes were"
+        return f"{tried} too coarse; {place}"
 
     def in_vain(self) -> str:
         """Return the reason why no finer mesh would help; empty if one may."""
@@ -334,9 +338,11 @@ def _meshes(refinement: Refinement) -> Iterator[Mapping[str, Any]]:
     for _ in range((most or MOST_MESHES) - 1):
         last = refinement.last
         assert last is not None and last.score is not None
-        refinement.mesh = refined(
-            refinement.scene, last.body, refinement.mesh, last.score, refinement.tol
-        )
+        finer = refined(refinement.scene, last.body, refinement.mesh, last.score, refinement.tol)
+        if finer is None:
+            refinement.no_room = True
+            return
+        refinement.mesh = finer
         last.body.cache.clear()  # its factor need not be held beside the next one
         yield refinement.mesh.options()
 

@@ -9,13 +9,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body
-from solidgear.core.bounds.refining import corner_strength
-from solidgear.core.judge.singular_places import Place, Singular, singular_places
+from solidgear.core.bounds.narrow import EXPONENTS
+from solidgear.core.bounds.singular_places import Place, Singular, singular_places
 from solidgear.core.kernel.assembly import reference
 from solidgear.core.meshing.corners import SHOULDER, concave_edges
 from solidgear.core.meshing.grading import corner_length
 from solidgear.core.scene.feature import SMALLEST
-from solidgear.core.scene.shaft import without_axis
+from solidgear.core.scene.shaft import attached_stations, without_axis
 
 if TYPE_CHECKING:
     from solidgear.core.models.solid.mesh import SolidMesh
@@ -61,7 +61,7 @@ def solid_places(
     mesh: SolidMesh = getattr(drawing, "cut", drawing).solved
     if without_axis(scene):
         return (*_edges(mesh, ()), *_ends_of_patches(scene, body, mesh))
-    around = singular_places(scene, attachments)
+    around = singular_places(scene, attached_stations(scene.stations, attachments))
     if scene.body is not None:
         return (*around, *_edges(mesh, around))
     return (*around, *_features(scene, mesh))
@@ -166,8 +166,7 @@ def _ends_of_patches(scene: Scene, body: Body, mesh: SolidMesh) -> Iterator[Spot
         numbers, times = np.unique(edges[:, on_patch], return_counts=True)
         border = np.unique(mesh.mesh.edges[:, numbers[times == 1]])
         if len(border):
-            exponent = corner_strength("rigid" if port.attachment == "rigid" else "load", np.pi)
-            what = f"end of patch {patch.name}"
+            what, exponent = f"end of patch {patch.name}", EXPONENTS[port.attachment]
             yield Spots(what, mesh.mesh.p[:, border], patch.extent, exponent)
 
 

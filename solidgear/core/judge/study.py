@@ -287,7 +287,8 @@ class TiedSolver:
         refinement, scene = self.refinement, self.refinement.scene
         answer, section_answer = solution.ties[SCENE], solution.ties.get(SECTION)
         self.progress(f"{refinement.model.name}: section ties")
-        if section_answer is not None:
+        # a mesh may have no error bars
+        if section_answer is not None and SCENE in solution.error_bars:
             tied_scene = scene.with_attachment("section")
             with self.meter.stage("band"):
                 error_bars = solution.error_bars[SCENE]

@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body, Supports, as_supports
+from solidgear.core.bounds.singular_places import Place
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.bars import LEAST, ErrorBar
@@ -22,7 +23,6 @@ from solidgear.core.judge.bounded import NOTHING_BEYOND, bounded
 from solidgear.core.judge.cell_places import CellPlaces, Share
 from solidgear.core.judge.quantities import usual
 from solidgear.core.judge.record import PlaceRecord, WhereRecord
-from solidgear.core.judge.singular_places import Place
 from solidgear.core.judge.solving import ENOUGH, Statics, numbers, search_modes
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.ladder import build

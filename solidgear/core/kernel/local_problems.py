@@ -125,7 +125,7 @@ def _solved(
     for (k, h), place in zip(members, places):
         stiffness[place[:, None], place] += cells[k].stiffness
         load[place] += cells[k].loads[h]
-    # an unknown that moves all of a condensed cell as a rigid body has no stiffness but rounding
+    # an unknown that moves a whole patch as a rigid body has no stiffness but rounding, of either sign
     diagonal = stiffness.diagonal()
     root = 1 / np.sqrt(np.maximum(diagonal, ROUNDED * diagonal.max()))
     stiffness *= root[:, None]
@@ -133,11 +133,21 @@ def _solved(
     load *= root[:, None]
     free = _orthonormal(rigid[ids] / root[:, None])
     load -= free @ (free.T @ load)
-    stiffness += free @ free.T
+    _stiffen(stiffness, free)
     stiffness.flat[:: n + 1] += REGULAR
     x = _solve(stiffness, load) * root[:, None]
     for (k, _), place in zip(members, places):
         yield k, x[place]
+
+
+def _stiffen(stiffness: np.ndarray, free: np.ndarray) -> None:
+    """Give orthonormal motions that cost no energy a stiffness of one, and take out what rounding has
+    left them: it may be negative, and as large as that after scaling.
+    """
+    rounding = stiffness @ free
+    rest = rounding - free @ (free.T @ rounding + np.eye(free.shape[1])) / 2
+    stiffness -= rest @ free.T
+    stiffness -= free @ rest.T
 
 
 def _solve(matrix: np.ndarray, right: np.ndarray) -> np.ndarray:

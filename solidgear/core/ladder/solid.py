@@ -211,7 +211,7 @@ def _has_lines(scene: Any, options: Options) -> bool:
     """Return whether stress is singular along lines of a mesh of tetrahedra, other than the ends of
     averaged seats.
     """
-    from solidgear.core.bounds.sharpest import LOAD_EDGE, sharpest_exponent
+    from solidgear.core.bounds.singular_places import LOAD_EDGE, sharpest_exponent
     from solidgear.core.scene.shaft import without_axis
 
     # of a sector that repeats, edges are meshed by themselves

@@ -94,6 +94,7 @@ class Deflection:
     led: str = ""
     statics: Statics | None = None  #: of a shaft alone
     lumped: tuple[str, ...] = ()  #: names of the lumped points of a shaft alone
+    unbounded: str = ""  #: why a mesh has no error bar; empty where it has
     still: str = (
         ""  #: station of a twisted shaft alone that does not turn; empty where bearings hold it
     )
@@ -213,7 +214,9 @@ class Deflections(Sheeted):
     @property
     def why_without_bar(self) -> str:
         """Reason why no number has an error bar; empty where some have one."""
-        return "" if any(solution.barred for solution in self.solutions) else WITHOUT_BAR
+        if any(solution.barred for solution in self.solutions):
+            return ""
+        return self.judge.unbounded or WITHOUT_BAR
 
     def verdict(self) -> str:
         """Return a sentence on the cheapest model for the misalignment, or for the motion of the
@@ -418,6 +421,7 @@ def _solution(
         statics=_statics(assembly, load, shafts),
         lumped=() if load is None else tuple(p.name for p in assembly.scenes[ALONE].ports),
         still=_still(assembly, load),
+        unbounded=errors.unbounded,
     )
 
 

@@ -21,7 +21,6 @@ from solidgear.show.words import DASH
 from solidgear.strength.deflection.at_rest import (
     MOVED,
     ROUNDING,
-    WITHOUT_BAR,
     Deflection,
     Deflections,
     Measured,
@@ -360,9 +359,9 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
         beside = [value for six in of_judge for value in six]
         for line in _with_bars(row, [_bars(solution, port, units)]):
             rows.append(type(line)([*line, *beside]))
-    note = f"No error bars: {WITHOUT_BAR}."
-    if any(solution.barred for solution in deflected.solutions):
-        note = f"{OF_BARS} Models differ by what their theory leaves out."
+    note = f"{OF_BARS} Models differ by what their theory leaves out."
+    if deflected.why_without_bar:
+        note = f"No error bars: {deflected.why_without_bar}."
     columns = [word("model"), *_six(MOVED, units), *_beside(BAR)]
     for end, six in ends.items():
         columns += _beside(end)

@@ -285,6 +285,8 @@ class Assembly:
             if solid.mesh is not None and highest_resolved(scene, solid.body) < limit:
                 return {side: resolving(solid.mesh)}, np.inf
             errors = flexibility_errors(side, scene, solid.body)
+            if errors is None:
+                return {}, 0.0
             needs = errors.needs(len(errors.bars), self.tolerance)
             return self.finer_meshes(needs), float(errors.bars.max())
 
@@ -335,10 +337,11 @@ class Assembly:
         finer = {}
         for side, need in needs.items():
             solid = self.shaft_model(side, JUDGE)
-            if solid.mesh is not None:
-                finer[side] = refined(
-                    self.scenes[side], solid.body, solid.mesh, need.score, need.tolerance
-                )
+            if solid.mesh is None:
+                continue
+            mesh = refined(self.scenes[side], solid.body, solid.mesh, need.score, need.tolerance)
+            if mesh is not None:
+                finer[side] = mesh
         return finer
 
     def _solids(self, models: Mapping[str, str]) -> dict[str, Body]:

@@ -20,6 +20,7 @@ from solidgear.core.bounds.harmonic import (
     VibrationEnergies,
     harmonic_bounds,
     vibration_energies,
+    why_unbounded,
     with_tail,
 )
 from solidgear.core.bounds.refining import HIGHEST, MOST_MESHES, Meshed
@@ -88,8 +89,8 @@ def mesh_errors(
     system: System, scenes: Mapping[str, Scene], bodies: Mapping[str, Body], n: int
 ) -> MeshErrors | None:
     """Compute the errors of the first n elastic frequencies of a system by the meshes of some of
-    the shafts, harmonic ones; None without any, and where teeth drive families of two waves and
-    more.
+    the shafts, harmonic ones; None without any, where teeth drive families of two waves and more,
+    and where nothing is known of the error of one.
     """
     if not bodies:
         return None
@@ -107,7 +108,10 @@ def mesh_errors(
         fields = system.expand(side, shapes)
         if max(fields) >= FURTHER:
             return None
-        by_shaft[side] = vibration_energies(coned(scenes[side]), body, fields, value)
+        shape = coned(scenes[side])
+        if why_unbounded(shape, body):
+            return None
+        by_shaft[side] = vibration_energies(shape, body, fields, value)
     two_more = np.sum([energies.two_more for energies in by_shaft.values()], axis=0)
     one_more = np.sum([energies.one_more for energies in by_shaft.values()], axis=0)
     energy = two_more.diagonal()
@@ -125,10 +129,12 @@ def mesh_errors(
     )
 
 
-def flexibility_errors(side: str, scene: Scene, body: Body) -> MeshErrors:
+def flexibility_errors(side: str, scene: Scene, body: Body) -> MeshErrors | None:
     """Compute the errors of the flexibility of a free harmonic shaft at its ports, under every unit
-    load, balanced by inertia.
+    load, balanced by inertia; None where nothing is known of them.
     """
+    if why_unbounded(coned(scene), body):
+        return None
     bounds = harmonic_bounds(coned(scene), body, statics=True)
     by_cell = np.einsum("cii->ic", bounds.of_ports)
     size = flexibility(body).matrix.diagonal()

@@ -20,7 +20,7 @@ from functools import cached_property
 import numpy as np
 
 from solidgear.core import System, coned, pinned
-from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, with_tail
+from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, why_unbounded, with_tail
 from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.system.system import port_forces
 from solidgear.trains.assembly.assembly import Assembly
@@ -45,7 +45,13 @@ class StaticErrors:
         sides = [side for side, model in state.models.items() if model == JUDGE]
         if any(mesh.local_harmonics for mesh in assembly.train.meshes):
             sides = []
-        self.bounds = {side: self._bounds_of(side) for side in sides}
+        #: why nothing is known of the error of a shaft; empty where there are bounds
+        self.unbounded = next(filter(None, map(self._why_unbounded, sides)), "")
+        self.bounds = {} if self.unbounded else {side: self._bounds_of(side) for side in sides}
+
+    def _why_unbounded(self, side: str) -> str:
+        body = self.assembly.shaft_model(side, JUDGE).body
+        return why_unbounded(coned(self.assembly.scenes[side]), body)
 
     def _bounds_of(self, side: str) -> HarmonicBounds:
         body = self.assembly.shaft_model(side, JUDGE).body

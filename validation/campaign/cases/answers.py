@@ -5,8 +5,9 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from functools import partial
+from itertools import combinations
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
@@ -16,6 +17,7 @@ from solidgear.core.scene.coned import coned
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import SMALL, SURE, Cost, Found, Row, Said, held
 from validation.campaign.scenes.bodies import BODIES
+from validation.campaign.scenes.ends import seat_at_edge
 from validation.campaign.scenes.shafts import random_scene
 from validation.campaign.truths.kept import PRODUCT, TRIANGLES, Truths
 from validation.campaign.truths.reference import EXTRA_MODES, LEVELS, plain_mode
@@ -55,19 +57,25 @@ class Answers(Case):
         add("--finest", type=float, default=FINEST, help="uncertainty that is good enough")
         add("--triangles", action="store_true", help="references of triangles too")
         add("--costs", action="store_true", help="processor time of answers alone")
+        add("--nested", action="store_true", help="no references: answers beside each other")
+        add("--ends", type=int, nargs=2, help="first and last seed of seats that end at edges")
         parser.set_defaults(seeds=None)
 
     def bodies(self, given: argparse.Namespace) -> list[tuple[str]]:
         first, last = given.seeds or (0, -1)
         random = [f"random {seed}" for seed in range(first, last + 1)]
+        first, last = given.ends or (0, -1)
+        random += [f"ends {seed}" for seed in range(first, last + 1)]
         return [(name,) for name in (*_drawn(given), *random, *given.scenes)]
 
     def asked(self, given: argparse.Namespace) -> str:
         drawn = len(_drawn(given))
         parts = [f"{drawn} drawn bodies"] * bool(drawn)
         parts += ["random shafts of seeds {} to {}".format(*given.seeds)] if given.seeds else []
+        parts += ["seats at edges of seeds {} to {}".format(*given.ends)] if given.ends else []
         parts += [f"{len(given.scenes)} scene files"] * bool(given.scenes)
         parts += ["with triangles"] * given.triangles + ["costs alone"] * given.costs
+        parts += ["beside each other"] * given.nested
         tolerances = ", ".join(f"{one:g}" for one in given.tolerance)
         return f"{'; '.join(parts)}; tolerances {tolerances}"
 
@@ -92,7 +100,8 @@ class Answers(Case):
                 answers[tolerance] = answer
             else:
                 out.problems.append(f"{body} at {tolerance:g}: answered by the {answer['rung']}")
-        if answers and not run.given.costs:
+        out.failures += excluding(body, answers)
+        if answers and not (run.given.costs or run.given.nested):
             out.rows += self._rows(run, body, scene, answers)
         return out
 
@@ -135,7 +144,7 @@ def _drawn(given: argparse.Namespace) -> list[str]:
     """Names of drawn bodies; of costs alone only those that words select."""
     if given.words:
         return [name for name in BODIES if any(word in name for word in given.words)]
-    return [] if given.no_drawn or given.costs else list(BODIES)
+    return [] if given.no_drawn or given.costs or given.ends else list(BODIES)
 
 
 def _row(
@@ -154,6 +163,24 @@ def kind_of(quantity: str) -> str:
     if name.is_frequency:
         return "mode"
     return "static" if name.diagonals is None else "coupling"
+
+
+def excluding(body: str, answers: Mapping[float, dict]) -> list[str]:
+    """Sentences on numbers of one body that answers at two tolerances place apart: no reference is
+    needed to see that one of both is wrong.
+    """
+    out = []
+    for (one, coarse), (other, fine) in combinations(sorted(answers.items(), reverse=True), 2):
+        said = {value["quantity"]: Said(**value) for value in coarse["values"]}
+        for value in fine["values"]:
+            name = value["quantity"]
+            if name not in said:
+                continue
+            low, high = zip(said[name].reach, Said(**value).reach)
+            gap = (max(low) - min(high)) / value["size"]
+            if gap > SMALL:
+                out.append(f"{body}, {name}: answers at {one:g} and {other:g} are {gap:.2g} apart")
+    return out
 
 
 def unsettled(row: Row, finest: float = FINEST) -> bool:
@@ -184,11 +211,15 @@ def shape_of(name: str, hz: float, modes: list[dict]) -> dict | None:
 # ------------------------------------------------------------------------------------------------
 # - scenes
 def scene_of(body: str) -> Scene:
-    """The scene of a body: its name if drawn, ``random SEED``, or the path of a scene file."""
+    """The scene of a body: its name if drawn, ``random SEED``, ``ends SEED``, or the path of a scene
+    file.
+    """
     if body in BODIES:
         return BODIES[body].make()
     if body.startswith("random "):
         return random_scene(int(body.removeprefix("random ")))
+    if body.startswith("ends "):
+        return seat_at_edge(int(body.removeprefix("ends ")))
     return sg.load(body)
 
 

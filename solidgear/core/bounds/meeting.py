@@ -1,0 +1,127 @@
+"""What meets at a point of the surface of a shaft: wedges of materials, and which outer face is held."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from math import atan2, cos, pi
+from typing import TYPE_CHECKING, NamedTuple
+
+from solidgear.core.bounds.wedge import Wedge, wedge_exponent
+
+if TYPE_CHECKING:
+    from solidgear.core.scene import Scene
+    from solidgear.core.scene.parts import Material, Segment
+    from solidgear.core.scene.shaft import Station
+
+#: shares of the length of a shaft within which points are one, and angles, rad, that are
+SAME, SAME_ANGLE = 1e-9, 1e-9
+#: least side of a cell, in distances within which points are one
+RESOLVED = 4.0
+
+
+def least_side(length: float) -> float:
+    """Return the least side of a cell of a shaft, m, whose ends are still two points."""
+    return RESOLVED * SAME * length
+
+
+@dataclass(frozen=True)
+class Meeting:
+    """Wedges side by side around a point, the two outer faces of which are no material's."""
+
+    wedges: tuple[Wedge, ...]
+    held: tuple[bool, bool]  #: whether the outer face of the first and of the last is held
+
+    @property
+    def angle(self) -> float:
+        """Angle of the material, rad."""
+        return sum(angle for angle, _ in self.wedges)
+
+    @property
+    def joined(self) -> bool:
+        """Whether several materials meet."""
+        return len(self.wedges) > 1
+
+    @property
+    def exponent(self) -> float:
+        """Exponent of displacement there, one at most: the less, the sharper."""
+        faces = sum(self.held)
+        if not faces and not self.joined and self.angle <= pi + SAME_ANGLE:
+            return 1.0
+        turned = self.held == (False, True)
+        return wedge_exponent(self.wedges[::-1] if turned else self.wedges, faces)
+
+
+def meeting(scene: Scene, y: float, r: float, rigid: Iterable[Station]) -> Meeting | None:
+    """Return what meets at a point (m) of the surface of a scene, with the seats of some stations
+    rigid; None where no surface is.
+    """
+    tol = SAME * scene.length
+    sectors = [s for s in (_sector(segment, y, r, tol) for segment in scene.segments) if s]
+    first = next((s for s in sectors if not any(_touch(other, s) for other in sectors)), None)
+    if first is None:
+        return None  # all around is material
+    row = [first]
+    while following := next((s for s in sectors if _touch(row[-1], s)), None):
+        row.append(following)
+    seats = [(s.lo, s.hi) for s in rigid]
+    # the surface outside goes on towards smaller y before the first wedge, and beyond the last one
+    before, after = cos(row[0].start) < -SAME_ANGLE, cos(row[-1].end) > SAME_ANGLE
+    held = (
+        before and any(lo < y - tol and y <= hi + tol for lo, hi in seats),
+        after and any(lo - tol <= y and y + tol < hi for lo, hi in seats),
+    )
+    return Meeting(tuple(_merged(row)), held)
+
+
+class _Sector(NamedTuple):
+    """Directions into a segment from a point, as angles from the axis to larger radii, rad."""
+
+    start: float
+    end: float
+    material: Material
+
+
+def _sector(segment: Segment, y: float, r: float, tol: float) -> _Sector | None:
+    """Return the directions into a segment from a point that it holds; None of any other."""
+    if not segment.y0 - tol <= y <= segment.y1 + tol:
+        return None
+    inner, outer = segment.radius_at(min(max(y, segment.y0), segment.y1))
+    if not inner - tol <= r <= outer + tol:
+        return None
+    rise_out = atan2(segment.outer1 - segment.outer0, segment.length)
+    rise_in = atan2(segment.inner1 - segment.inner0, segment.length)
+    on_outer, on_inner = r > outer - tol, inner > tol and r < inner + tol
+    if y < segment.y0 + tol:
+        start = rise_in if on_inner else -pi / 2
+        end = rise_out if on_outer else pi / 2
+    elif y > segment.y1 - tol:
+        start = pi + rise_out if on_outer else pi / 2
+        end = pi + rise_in if on_inner else 3 * pi / 2
+    elif on_outer:
+        start, end = pi + rise_out, 2 * pi + rise_out
+    elif on_inner:
+        start, end = rise_in, pi + rise_in
+    else:
+        return None
+    return _Sector(start, end, segment.material)
+
+
+def _touch(first: _Sector, second: _Sector) -> bool:
+    """Return whether one sector begins where another ends."""
+    return abs((second.start - first.end + pi) % (2 * pi) - pi) < SAME_ANGLE
+
+
+def _merged(row: Sequence[_Sector]) -> list[Wedge]:
+    """Return sectors side by side as wedges, of one elasticity as one."""
+    wedges: list[Wedge] = []
+    for start, end, material in row:
+        angle = end - start
+        if wedges and _elasticity(wedges[-1][1]) == _elasticity(material):
+            angle += wedges.pop()[0]
+        wedges.append((angle, material))
+    return wedges
+
+
+def _elasticity(material: Material) -> tuple[float, float]:
+    return material.E, material.nu
