@@ -24,6 +24,7 @@ from solidgear.trains.response.excitation import excitation
 pytestmark = pytest.mark.usefixtures("coarse_teeth")
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
+FOUND = Path(__file__).parent / "found" / "teeth"
 QUICK = TeethModel(slices=12, positions=8)
 OTHER = {"left": "right", "right": "left"}
 
@@ -353,3 +354,18 @@ def test_the_command_says_nothing_of_a_stiffness_that_the_file_does_not_have(tmp
     assert code == 0 and "stiffness, tangent" in printed and "the teeth give" not in printed
     data = json.loads(run(*command, "--json")[1])
     assert data["file_stiffness"] == {"mesh": None} and data["model"] == "slices"
+
+
+@pytest.mark.parametrize(
+    "folder, stiffness, factor", [("iso_plastic", 12.1, 1.00), ("iso_iron", 433.0, 1.56)]
+)
+def test_the_norm_knows_the_material_of_both_wheels(folder, stiffness, factor):
+    """Steel on plastic of 3 GPa and on cast iron of 110 GPa, N/um, by hand with E / E_steel; `deflect`
+    has the same number and the face load factor that follows from it.
+    """
+    train = sg.load_train(FOUND / folder / "t.toml")
+    contact = solved(train.with_changes(mesh=train.mesh.with_changes(stiffness="3e8 N/m")))
+    assert contact.along_line(contact.norm.mesh) == pytest.approx(stiffness * 1e6, rel=2e-3)
+    (load,) = sg.deflect(FOUND / folder / "t.toml", "timoshenko").judge.face_loads
+    assert load.stiffness == pytest.approx(contact.norm.mesh, rel=1e-6)
+    assert contact.norm_face_load_factor == pytest.approx(factor, abs=0.01)

@@ -799,6 +799,14 @@ MUTATIONS = (
         "tests/test_teeth_contact.py::test_relieved_flanks_touch_beside_the_line_of_action[None]",
     ),
     Mutation(
+        "the norm's mesh stiffness by the mean of both moduli",
+        "solidgear/core/gears/norm.py",
+        "material_factor",
+        "2 * first * second / (first + second)",
+        "(first + second) / 2",
+        "tests/test_teeth_contact.py::test_stiffness_by_the_norm_is_that_of_the_material",
+    ),
+    Mutation(
         "flanks: a helix slope turns with the flank that carries",
         "solidgear/trains/file/mesh_teeth.py",
         "_mesh_teeth",

@@ -179,7 +179,8 @@ class MeshContact(SolvedMesh):
     @cached_property
     def norm(self) -> NormStiffness:
         """Stiffnesses by ISO 6336-1."""
-        return norm_stiffness(self.wheels, self.line_load)
+        first, second = (material.youngs for material in self.pair.law.materials)
+        return norm_stiffness(self.wheels, self.line_load, (first, second))
 
     def along_line(self, specific: float) -> float:
         """Return the stiffness along the line of action, N/m, of a specific one, N/m per m."""

@@ -12,7 +12,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from solidgear.core import Scene, SceneError
+from solidgear.core import SceneError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
 from solidgear.teeth.compliance.flank import FlankCompliance
@@ -26,8 +26,9 @@ from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, with_usual_meshes
+from solidgear.trains.file.gears import Member
 from solidgear.trains.file.mesh_cycle import StiffnessCycle
-from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
+from solidgear.trains.file.mesh_teeth import MeshTeeth, gears_of, material_of, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
@@ -145,37 +146,28 @@ def wheel_bodies(mesh: Pair | PlanetMesh, teeth: MeshTeeth) -> tuple[WheelBody, 
     wheels = teeth.wheels
     bodies = []
     for wheel, gear, hand, middle in zip(
-        (wheels.first, wheels.second), _gears(mesh), (1, -1), wheels.face_middles
+        (wheels.first, wheels.second), gears_of(mesh), (1, -1), wheels.face_middles
     ):
-        scene, rigid = gear
-        material = Elasticity() if scene is None else _material(scene)
-        hold = None if scene is None else _hold(scene, wheel, rigid)
+        material = Elasticity() if gear is None else _elasticity(gear)
+        hold = None if gear is None else _hold(gear, wheel)
         bodies.append(WheelBody(material, hold, hand, wheels.face_width, -middle))
     return bodies[0], bodies[1]
 
 
-def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:
-    """Return the scene that carries each wheel, if any, and whether the wheel is a rigid mass on it."""
-    if isinstance(mesh, Pair):
-        return [(member.scene, member.head is not None) for member in mesh.members.values()]
-    # planets and rings are rigid bodies of the train, of steel
-    return [(None, True), (None, True)]
-
-
-def _material(scene: Scene) -> Elasticity:
-    segments = scene.segments_at(scene.port.y)
-    material = segments[0].material if segments else scene.material
+def _elasticity(gear: Member) -> Elasticity:
+    material = material_of(gear)
     return Elasticity(material.E, material.nu)
 
 
-def _hold(scene: Scene, wheel: Wheel, rigid: bool) -> float | None:
+def _hold(gear: Member, wheel: Wheel) -> float | None:
     """Return the radius at which the body of a wheel ends: its bore, the seat of a wheel that is no
     part of its shaft, or none where it is solid.
     """
+    scene = gear.scene
     y = scene.port.y
     radii = [segment.radius_at(y) for segment in scene.segments_at(y)]
     inner, outer = (max(values) for values in zip(*radii))
-    radius = outer if rigid else inner
+    radius = inner if gear.head is None else outer
     deepest = wheel.root - 1.5 * wheel.module
     return radius if THINNEST * wheel.root < radius < deepest else None
 
@@ -211,7 +203,7 @@ def solved_mesh(
     """Solve the contact of any mesh over its cycle; bevel teeth are of slices."""
     if isinstance(mesh, Pair) and mesh.mesh.shaft_angle:
         model = model or TeethModel()
-        materials = [_material(member.scene) for member in mesh.members.values()]
+        materials = [_elasticity(member) for member in mesh.members.values()]
         both = materials[0], materials[1]
         return bevel_contact(carried, mesh, both, model.slices, model.positions)
     return mesh_contact(carried, mesh, model)

@@ -20,7 +20,7 @@ from solidgear.trains.assembly.housing import housing_facts
 from solidgear.trains.assembly.layout import senses, senses_sentence
 from solidgear.trains.assembly.local import undriven
 from solidgear.trains.assembly.matrices_body import matrices_facts
-from solidgear.trains.assembly.mesh_stiffness import USUAL
+from solidgear.trains.assembly.mesh_stiffness import usual_stiffness
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.assembly.slips import mesh_unit_slips
 from solidgear.trains.file.mesh_teeth import wheels_of
@@ -143,7 +143,7 @@ def _tooth_facts(pair: Pair) -> Iterator[str]:
     if solves:
         yield (
             f"the teeth give this stiffness (stiffness = {TEETH!r}); check solves no contact and "
-            f"takes {1e-9 * USUAL:g} N/(mm um) of face width"
+            f"takes {1e-9 * usual_stiffness(pair):.3g} N/(mm um) of face width"
         )
     if teeth is not None and teeth.assumed:
         yield f"assumed of the teeth: {'; '.join(teeth.assumed)}"
