@@ -121,7 +121,7 @@ def test_error_bars_hold_against_finer_slices_and_cells(carried):
         ),
     )
     place = carried.place(mesh, teeth)
-    supports = carried.supports(place, Frame.of(place, teeth))
+    supports = carried.supports(mesh, place, Frame.of(place, teeth))
     base = teeth.wheels.first.base
     cycle = mesh_cycle(finer, contact.cycle.torque, base, 32, supports, 16)
     found = numbers_of(replace(contact, pair=finer, cycle=cycle))

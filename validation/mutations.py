@@ -807,6 +807,15 @@ MUTATIONS = (
         "tests/test_teeth_contact.py::test_stiffness_by_the_norm_is_that_of_the_material",
     ),
     Mutation(
+        "a floating sun goes where one of its planets pushes it",
+        "solidgear/teeth/supports.py",
+        "Carried._alike",
+        "m.mate == mesh.mate and m.name != mesh.name",
+        "False",
+        "tests/test_face_load.py::"
+        "test_a_floating_sun_has_the_face_load_factors_of_springs_along_every_face",
+    ),
+    Mutation(
         "flanks: a helix slope turns with the flank that carries",
         "solidgear/trains/file/mesh_teeth.py",
         "_mesh_teeth",

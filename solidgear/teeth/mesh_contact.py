@@ -1,9 +1,11 @@
 r"""Contact of one mesh of a train over a mesh cycle, on its shafts, at an operating point.
 
-**Askew.**  How far flanks open along the face before they touch, by the supports under their load: at
-the pitch line, as ``n . (u1 - u2)`` at every section, mean over the cycle.  From end to end of the face
-it is the equivalent misalignment f_sh of ISO 6336-1, 7.5.2, here with bending, tilting and the wind-up
-of both shafts within the face, which that of one lumped point does not have.
+**Askew.**  How far flanks open along the face before they touch, by the supports under the load that
+the train at rest has, spread evenly along the face, of planets with the moment of their springs: at the
+pitch line, as ``n . (u1 - u2)`` in the transverse plane.  From end to end of the face it is the
+equivalent misalignment f_sh of ISO 6336-1, 7.5.2, as `deflect` has it, here with bending, tilting and
+the wind-up of both shafts within the face, which that of one lumped point does not have.  Where teeth
+then carry, and how far they stay askew, is the contact.
 """
 
 from __future__ import annotations
@@ -33,7 +35,9 @@ CORNER, IDLE, EDGE = 0.02, 1e-3, 1.2
 
 @dataclass(frozen=True)
 class Skew:
-    """How far flanks open from one end of the face to the other, m; positive towards larger w."""
+    """How far flanks open from one end of the face to the other in the transverse plane, m; positive
+    towards larger y of the first wheel's scene, of planets and rings of the sun's.
+    """
 
     bending: float  #: by bending and tilting of both shafts, with bearings and housing
     turning: float  #: by the wind-up of both bodies within the face
@@ -144,6 +148,7 @@ class MeshContact(SolvedMesh):
     """
 
     pair: CylindricalPair
+    along: int  #: 1 where face places grow along y of the first wheel's scene, else -1
 
     @property
     def teeth(self) -> ToothedPair:
@@ -188,23 +193,15 @@ class MeshContact(SolvedMesh):
 
     @cached_property
     def skew(self) -> Skew:
-        """How the flanks lie askew under load."""
-        face, wheels = self.wheels.face_width, self.wheels
-        ends = np.array([-face / 2, face / 2])
-        shape = shape_opening(wheels, self.pair.shapes)
-        point = np.column_stack([np.zeros(2), np.zeros(2), ends])
-        normal = np.tile(self.cycle.positions[0].cells.normal[0], (2, 1))
-        rows = self.supports.opening(point, normal)
-        across = rows[1] - rows[0]
-        motion = np.mean(
-            [
-                self.supports.motion
-                + self.supports.compliance @ (position.force @ self.supports.rows(position.cells))
-                for position in self.cycle.positions
-            ],
-            axis=0,
-        )
-        turning = float(across @ self.supports.turning @ motion)
+        """How the flanks lie askew under the load of the train at rest."""
+        supports, face = self.supports, self.wheels.face_width
+        points = np.column_stack([np.zeros((2, 2)), [-face / 2, face / 2]])
+        normals = np.tile(self.cycle.positions[0].cells.normal[0], (2, 1))
+        first, last = supports.opening(points, normals)
+        across = self.along * (last - first) / cos(self.wheels.base_helix)
+        motion = supports.motion + supports.compliance @ supports.spread
+        turning = float(across @ supports.turning @ motion)
+        shape = self.along * shape_opening(self.wheels, self.pair.shapes)
         return Skew(float(across @ motion) - turning, turning, shape)
 
     @property

@@ -107,7 +107,7 @@ NOTE = (
 )
 NORM_NOTE = (
     "ISO 6336-1: method B with CM = 0.8, along the line of action. Misalignment: how far flanks open "
-    "from end to end of the face, f_sh of the norm."
+    "from end to end of the face under an even load, f_sh of the norm with bending within the face."
 )
 
 BAR_NOTES = {

@@ -185,12 +185,13 @@ def mesh_contact(
         carried.pairs[wheels] = toothed(mesh, teeth, model)
     contact = carried.pairs[wheels].with_shapes(teeth.shapes)
     place = carried.place(mesh, teeth)
-    supports = carried.supports(place, Frame.of(place, teeth))
+    supports = carried.supports(mesh, place, Frame.of(place, teeth))
     torque = carried.force(place) * teeth.wheels.first.base * np.cos(teeth.wheels.base_helix)
     base = teeth.wheels.first.base
     return MeshContact(
         name=mesh.name,
         pair=contact,
+        along=teeth.along[0],
         supports=supports,
         cycle=mesh_cycle(contact, torque, base, model.slices, supports, model.positions),
         assumed=teeth.assumed,

@@ -207,7 +207,7 @@ def bevel_contact(
     mismatch = mismatch_of(pair, blank)
     toothed = toothed_bevel(blank, materials, mismatch, slices)
     place = place_of_pair(carried.assembly, carried.system, pair)
-    supports = carried.supports(place, apex_frame(carried, pair, blank))
+    supports = carried.supports(pair, place, apex_frame(carried, pair, blank))
     lever = carried.assembly.contacts[pair.name].pinion.lever
     torque = abs(float(carried.force(place) * lever))
 
