@@ -366,3 +366,35 @@ def test_the_norm_knows_the_material_of_both_wheels(folder, stiffness, factor):
     (load,) = sg.deflect(FOUND / folder / "t.toml", "timoshenko").judge.face_loads
     assert load.stiffness == pytest.approx(contact.norm.mesh, rel=1e-6)
     assert contact.norm_face_load_factor == pytest.approx(factor, abs=0.01)
+
+
+@pytest.mark.parametrize(
+    "file, key, words",
+    [
+        ("three_teeth", "pinion.teeth", "contact ratio is 0.46, below 1"),
+        ("short_tips", "pinion.teeth", "contact ratio is 0.46, below 1"),
+        ("face_20_m", "pinion.face_width", "puts 80 mm of the face on the shaft"),
+    ],
+)
+def test_teeth_without_a_contact_are_refused_by_their_key(file, key, words):
+    with pytest.raises(SceneError, match=f"{file}.toml: {key} = .*: .*{words}"):
+        sg.contact(FOUND / "spoiled" / f"{file}.toml", factors=())
+
+
+def test_loads_beyond_all_teeth_are_refused_and_beyond_steel_a_caution():
+    """A pair that carries 300 N m: at 10 kN m flanks dent, at 300 kN m teeth would bend by three
+    modules.
+    """
+    train = sg.load_train(FOUND / "spoiled" / "short_tips.toml")
+    members = {"pinion": train.pinion, "gear": train.gear}
+    whole = {side: member.with_changes(tip_diameter=None) for side, member in members.items()}
+    train = train.with_changes(**whole)
+
+    def at(torque):
+        return solved(train.with_changes(mesh=train.mesh.with_changes(stiffness=4e8)), torque)
+
+    assert at(OperatingPoint(torque=300.0)).cautions == ()
+    (caution,) = at(OperatingPoint(torque=10e3)).cautions
+    assert "above 4 GPa, which no steel bears" in caution
+    with pytest.raises(SolidgearError, match="would give way by .* mm .* of their module of 4 mm"):
+        at(OperatingPoint(torque=300e3))

@@ -13,10 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
+from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.flank_shape import shape_opening
 from solidgear.core.gears.norm import NormStiffness, norm_face_load_factor, norm_stiffness
 from solidgear.core.gears.wheel_pair import WheelPair
@@ -25,9 +26,13 @@ from solidgear.teeth.contact.cells import ToothedPair
 from solidgear.teeth.contact.cycle import MeshCycle, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Supports
+from solidgear.trains.file.lengths import in_mm
 
 #: orders of the transmission error that are listed
 ORDERS = 5
+#: normal modules that teeth may give way by: steel breaks at a thirtieth, soft plastics at a tenth;
+#: pressure between hard rolling bodies that stay elastic, N/m^2 (ISO 76, roller bearings)
+MOST_BENT, ELASTIC = 0.25, 4e9
 #: share of the load on corners that is worth a sentence; load of a slice that is none, of the mean;
 #: face load factor from which an end that carries most is worth one
 CORNER, IDLE, EDGE = 0.02, 1e-3, 1.2
@@ -69,6 +74,33 @@ class SolvedMesh:
     def teeth(self) -> ToothedPair:
         """Both wheels as their contact needs them."""
         raise NotImplementedError
+
+    @property
+    def module(self) -> float:
+        """Normal module, at the middle of the face, m."""
+        raise NotImplementedError
+
+    def within_reach(self) -> Self:
+        """Return the same; refused for teeth that give way by so much that nothing here holds."""
+        given = max(position.total / position.tangent for position in self.cycle.positions)
+        if given > MOST_BENT * self.module:
+            raise SolidgearError(
+                f"teeth of the {self.name} would give way by {1e3 * given:.3g} mm under {self.cycle.force:.4g} "
+                f"N, {given / self.module:.2g} of their module of {in_mm(self.module)}: no teeth do so "
+                "and stay whole; correct the torque, the face width or the module"
+            )
+        return self
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on what the numbers leave out."""
+        if self.cycle.pressure <= ELASTIC:
+            return ()
+        return (
+            f"the largest pressure of the {self.name}, {self.cycle.pressure / 1e9:.2g} GPa, is above "
+            f"{ELASTIC / 1e9:g} GPa, which no steel bears without lasting dents (ISO 76); the contact "
+            "is computed as if it were elastic",
+        )
 
     @property
     def status(self) -> str:
@@ -174,6 +206,11 @@ class MeshContact(SolvedMesh):
     def wheels(self) -> WheelPair:
         """Geometry of both wheels."""
         return self.pair.wheels
+
+    @property
+    def module(self) -> float:
+        """Normal module, m."""
+        return self.wheels.first.module
 
     @property
     def line_load(self) -> float:

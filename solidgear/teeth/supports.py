@@ -334,9 +334,9 @@ def _gears(mesh: Pair | PlanetMesh) -> list[tuple[str, str]]:
 def _points(scene: Scene, name: str, face: Face) -> Iterator[Port]:
     """Yield the sections along a face, on the shaft."""
     port, (offset, width) = next(p for p in scene.ports if p.name == name), face
-    half = SEAT * width / 2
     low = max(port.y + offset - width / 2, 0.0)
     high = min(port.y + offset + width / 2, scene.length)
+    half = SEAT * (high - low) / 2
     for k, y in enumerate(np.linspace(low + half, high - half, SECTIONS)):
         # a seat lies on one segment
         segment = scene.segments_at(y)[0]

@@ -34,6 +34,7 @@ from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
 from solidgear.trains.file.tables import TEETH, ErrorTable, Mesh
 from solidgear.trains.file.tip_rules import tip_problems
+from solidgear.trains.file.tooth_fit import parting_teeth
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of, other_flank
 
@@ -120,8 +121,8 @@ def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
             "is missing; contact of teeth needs it of one of both wheels",
             path=(*path, "face_width"),
         )
-    if not teeth.wheels.contact_ratio > 0:
-        raise SceneError("has tips that do not reach each other", path=path)
+    if parting := parting_teeth(teeth.wheels):
+        raise SceneError(parting, path=(*path, "teeth" if isinstance(mesh, Pair) else "mesh"))
     cutting = tip_problems(mesh, teeth.wheels, solved=True)
     if isinstance(mesh, Pair):
         cutting = mesh.with_file_paths(cutting)
@@ -195,7 +196,7 @@ def mesh_contact(
         supports=supports,
         cycle=mesh_cycle(contact, torque, base, model.slices, supports, model.positions),
         assumed=teeth.assumed,
-    )
+    ).within_reach()
 
 
 def solved_mesh(

@@ -69,6 +69,11 @@ class BevelContact(SolvedMesh):
         return self.pair
 
     @property
+    def module(self) -> float:
+        """Normal module at the middle of the face, m."""
+        return self.pair.flanks.blank.module
+
+    @property
     def estimated(self) -> bool:
         """Whether cutter or mismatch are."""
         return self.eased or "cutter_radius" in self.pair.flanks.blank.estimated
@@ -218,4 +223,4 @@ def bevel_contact(
         cycle=mesh_cycle(toothed, torque, toothed.base, slices, supports, positions),
         assumed=assumed(blank, mismatch),
         eased=mismatch is None,
-    )
+    ).within_reach()

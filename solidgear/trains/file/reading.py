@@ -31,7 +31,7 @@ from solidgear.core.reduction.matrix_units import MATRIX_UNITS
 from solidgear.core.scene.toml_file import name_of, parse, with_table_paths
 from solidgear.core.scene.typed import Problems
 from solidgear.trains.file.columns import CELL_COLUMNS, read_cells, read_flank
-from solidgear.trains.file.gears import Member, Shaft
+from solidgear.trains.file.gears import Gear, Member, Shaft
 from solidgear.trains.file.housing import HOUSING, TrainHousing
 from solidgear.trains.file.layout import layout_problems
 from solidgear.trains.file.operation import Operation
@@ -224,16 +224,27 @@ def with_list_of(raw: Mapping[str, Any], folder: Path, shaft: ReadShaft) -> Read
 
 
 def as_written(error: SceneError, raw: Mapping[str, Any]) -> SceneError:
-    """Return an error with paths of the file: as :func:`with_table_paths`, and those of a single
-    engine or load without a name.
+    """Return an error with paths of the file: as :func:`with_table_paths`, those of a single engine or
+    load without a name, and those of a single gear in a table of its own.
     """
     alone = [(role, role) for role in SHORT if not _several(raw.get(role))]
     problems = []
     for problem in error.problems:
         if problem.path[:2] in alone:
             problem = problem.located(None, path=(problem.path[0], *problem.path[2:]))
-        problems.append(problem)
+        problems.append(problem.located(None, path=_gear_path(problem.path, raw)))
     return with_table_paths(SceneError.of(problems), raw)
+
+
+def _gear_path(path: tuple, raw: Mapping[str, Any]) -> tuple:
+    """Return the path of a key of the only gear of a shaft where the file has a table for it."""
+    if path[:1] != ("shaft",) or len(path) < 3 or path[2] not in Gear.model_fields:
+        return path
+    table = raw["shaft"].get(path[1])
+    gears = table.get("gears") if isinstance(table, Mapping) else None
+    if not isinstance(gears, Mapping) or len(gears) != 1:
+        return path
+    return (*path[:2], "gears", *gears, *path[2:])
 
 
 def _several(table: Any) -> bool:
