@@ -19,7 +19,7 @@ from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
 from solidgear.teeth.compliance.flank import FlankCompliance
 from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM, PlaneTeeth
-from solidgear.teeth.compliance.slices import SPREAD, Slices
+from solidgear.teeth.compliance.slices import SPREAD, HelicalSlices, Slices, normal_section
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, harmonics, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
@@ -61,8 +61,9 @@ class TeethModel:
         Depth of readings below the flank, modules.
     spread : float
         How far a slice moves others along the face, modules; of slices alone.
-    bores : bool
-        Whether rims end freely at the bores of hollow shafts; without, all wheels are solid.
+    beside : bool
+        Whether wheels are as stiff as a thick shaft beside the face makes them: solid whatever their
+        bore, and not bent out of their plane.
 
     Examples
     --------
@@ -77,17 +78,20 @@ class TeethModel:
     coarse: bool = False
     depth: float = DEPTH
     spread: float = SPREAD
-    bores: bool = True
+    beside: bool = False
 
     def compliance(self, wheel: Wheel, body: WheelBody) -> FlankCompliance:
         """Return the compliance of a wheel's teeth."""
         depth = self.depth * wheel.module
-        bore = body.bore if self.bores else None
+        bore = None if self.beside else body.bore
         free = bore is not None
         if self.name == "slices":
-            plane = PlaneTeeth(wheel, hold=bore, elasticity=body.elasticity, free=free)
+            spur, length = normal_section(wheel), 1 / np.cos(wheel.helix_angle)
+            hold = None if bore is None else bore + spur.radius - wheel.radius
+            plane = PlaneTeeth(spur, hold=hold, elasticity=body.elasticity, free=free)
             plane = plane.coarser if self.coarse else plane
-            return Slices(plane, body.face_width, self.slices, depth, self.spread)
+            slices = Slices(plane, length * body.face_width, self.slices, depth, self.spread)
+            return HelicalSlices(wheel, slices, disc=not self.beside)
         solid = SolidTeeth(
             wheel,
             hold=bore,
