@@ -18,8 +18,8 @@ from solidgear.core.gears.wheel import Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
 from solidgear.teeth.compliance.flank import FlankCompliance
-from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM, PlaneTeeth
-from solidgear.teeth.compliance.slices import SPREAD, HelicalSlices, Slices, normal_section
+from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM
+from solidgear.teeth.compliance.slices import SPREAD, HelicalSlices
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, harmonics, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
@@ -84,20 +84,24 @@ class TeethModel:
         """Return the compliance of a wheel's teeth."""
         depth = self.depth * wheel.module
         bore = None if self.beside else body.bore
-        free = bore is not None
         if self.name == "slices":
-            spur, length = normal_section(wheel), 1 / np.cos(wheel.helix_angle)
-            hold = None if bore is None else bore + spur.radius - wheel.radius
-            plane = PlaneTeeth(spur, hold=hold, elasticity=body.elasticity, free=free)
-            plane = plane.coarser if self.coarse else plane
-            slices = Slices(plane, length * body.face_width, self.slices, depth, self.spread)
-            return HelicalSlices(wheel, slices, disc=not self.beside)
+            return HelicalSlices.of(
+                wheel,
+                body.face_width,
+                self.slices,
+                bore,
+                body.elasticity,
+                self.coarse,
+                depth,
+                self.spread,
+                disc=not self.beside,
+            )
         solid = SolidTeeth(
             wheel,
             hold=bore,
             reading_depth=depth,
             elasticity=body.elasticity,
-            free=free,
+            free=bore is not None,
             hand=body.hand,
             width=body.face_width,
             offset=body.offset,

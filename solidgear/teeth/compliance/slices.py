@@ -49,6 +49,7 @@ import numpy as np
 from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.wheel import Wheel
 from solidgear.teeth.compliance.plane import DEPTH, PlaneTeeth
+from solidgear.teeth.contact.local import Elasticity
 
 #: length lambda of the layer, modules: mean of thirty places on wheels in 3D, and twice the deviation
 #: (``validation/tooth_spread.py``); the load on the end of a tilted face is 5 % off at most
@@ -166,15 +167,39 @@ class HelicalSlices:
     >>> wheel = Wheel(29, 2.5e-3, helix_angle=0.35, face_width=25e-3)
     >>> normal_section(wheel).teeth
     34
-    >>> plane = PlaneTeeth(normal_section(wheel))
-    >>> teeth = HelicalSlices(wheel, Slices(plane, plane.wheel.face_width, slices=4))
-    >>> teeth.matrix(np.array([0]), np.array([wheel.radius]), np.array([0.0])).shape
-    (1, 1)
+    >>> teeth = HelicalSlices.of(wheel, face_width=25e-3, slices=10)
+    >>> even = teeth.matrix(np.zeros(10, int), np.full(10, wheel.radius), teeth.slices.middles)
+    >>> print(f"{even.sum(axis=1)[4] * 2.5e-3:.2g} m per N/m")
+    2.4e-11 m per N/m
     """
 
     wheel: Wheel
     slices: Slices  #: of its normal section, along the teeth
     disc: bool = True  #: whether the wheel bends out of its plane
+
+    @classmethod
+    def of(
+        cls,
+        wheel: Wheel,
+        face_width: float,
+        slices: int,
+        bore: float | None = None,
+        elasticity: Elasticity | None = None,
+        coarse: bool = False,
+        depth: float | None = None,
+        spread: float = SPREAD,
+        disc: bool = True,
+    ) -> HelicalSlices:
+        """Return the slices of a wheel, straight or helical, over the face that it shares, m; the rim ends
+        freely at a bore, m from the axis.
+        """
+        spur = normal_section(wheel)
+        hold = None if bore is None else bore + spur.radius - wheel.radius
+        steel = elasticity or Elasticity()
+        plane = PlaneTeeth(spur, hold=hold, elasticity=steel, free=bore is not None)
+        plane = plane.coarser if coarse else plane
+        length = face_width / cos(wheel.helix_angle)
+        return cls(wheel, Slices(plane, length, slices, depth, spread), disc)
 
     @property
     def depth(self) -> float:
