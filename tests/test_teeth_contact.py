@@ -317,6 +317,17 @@ def test_stiffness_by_the_norm():
     assert norm_stiffness(wheels, 50e3).single == pytest.approx(0.5**0.25 * norm.single)
 
 
+def test_stiffness_by_the_norm_is_that_of_the_material():
+    """E / E_steel with the harmonic mean of both moduli (ISO 6336-1), either way round."""
+    wheels = WheelPair(Wheel(23, 4e-3), Wheel(57, 4e-3))
+    steel = norm_stiffness(wheels).mesh
+    for youngs, factor in ((3e9, 0.02871), (110e9, 0.6962)):
+        for moduli in ((206e9, youngs), (youngs, 206e9)):
+            assert norm_stiffness(wheels, moduli=moduli).mesh / steel == pytest.approx(
+                factor, rel=2e-4
+            )
+
+
 def test_face_load_factor_by_the_norm_meets_where_load_ends_within_the_face():
     stiffness, load = 20e9, 300e3
     meets = 2 * load / (0.85 * stiffness)

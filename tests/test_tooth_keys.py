@@ -60,7 +60,7 @@ def solving():
 
 
 def written(folder, text, **files):
-    for name in ("gearbox_catalogue", "gearbox_wheel"):
+    for name in ("gearbox_catalogue", "gearbox_wheel", "gearbox_middle", "gearbox_output"):
         (folder / f"{name}.toml").write_text((GEOMETRY / f"{name}.toml").read_text())
     for name, content in files.items():
         (folder / f"{name}.csv").write_text(content)
@@ -316,3 +316,26 @@ def test_settings_of_no_cutter_are_refused(table, key, value):
     axle = sg.load_train(GEOMETRY / "axle_overhung.toml")
     with pytest.raises(SceneError, match=key):
         axle.with_changes(**{table: getattr(axle, table).with_changes(**{key: value})})
+
+
+def test_a_hand_of_straight_teeth_is_what_to_leave_out(tmp_path):
+    text = re.sub(r"spiral_angle = .*\n", "", TEXT)
+    with pytest.raises(SceneError, match="helix_angle: is missing; .* leave hand out for straight"):
+        _ = Assembly(sg.load_train(written(tmp_path, text))).contact
+
+
+@pytest.mark.parametrize("table", ["", ".gears.wheel"])
+def test_problems_name_the_only_gear_of_a_shaft_as_the_file_has_it(tmp_path, table):
+    """In the table of the shaft or in one of its own, while the file is read and later."""
+    text = (GEOMETRY / "gearbox_two_stage.toml").read_text()
+    words, before = 'scene_load = "replaced"\nteeth = 55\n', 'hand = "right"\nmodule = "4 mm"'
+    assert words in text and before in text
+    head = f"[shaft.output{table}]\n" if table else ""
+    text = text.replace(words, f'scene_load = "replaced"\n{head}teeth = 55\n')
+    text = text.replace("[shaft.output.head]", f"[shaft.output{table}.head]")
+    wrong = text.replace(before, 'hand = "left"\nmodule = "4 mm"')
+    with pytest.raises(SceneError, match=f"shaft.output{table}.hand = .* both wheels are left"):
+        sg.load_train(written(tmp_path, wrong))
+    train = sg.load_train(written(tmp_path, text))
+    pair = train.pairs[1]
+    assert ".".join(pair.paths["gear"]) == f"shaft.output{table}"

@@ -833,6 +833,31 @@ MUTATIONS = (
         "tests/test_teeth_contact.py::test_relieved_flanks_touch_beside_the_line_of_action[None]",
     ),
     Mutation(
+        "the norm's mesh stiffness by the mean of both moduli",
+        "solidgear/core/gears/norm.py",
+        "material_factor",
+        "2 * first * second / (first + second)",
+        "(first + second) / 2",
+        "tests/test_teeth_contact.py::test_stiffness_by_the_norm_is_that_of_the_material",
+    ),
+    Mutation(
+        "a rim that is held at its bore",
+        "solidgear/teeth/train_teeth.py",
+        "TeethModel.compliance",
+        "bore is not None",
+        "False",
+        "tests/test_teeth_train.py::test_thinner_rims_are_softer",
+    ),
+    Mutation(
+        "a floating sun goes where one of its planets pushes it",
+        "solidgear/teeth/supports.py",
+        "Carried._alike",
+        "m.mate == mesh.mate and m.name != mesh.name",
+        "False",
+        "tests/test_face_load.py::"
+        "test_a_floating_sun_has_the_face_load_factors_of_springs_along_every_face",
+    ),
+    Mutation(
         "flanks: a helix slope turns with the flank that carries",
         "solidgear/trains/file/mesh_teeth.py",
         "_mesh_teeth",

@@ -1,9 +1,11 @@
 r"""Contact of one mesh of a train over a mesh cycle, on its shafts, at an operating point.
 
-**Askew.**  How far flanks open along the face before they touch, by the supports under their load: at
-the pitch line, as ``n . (u1 - u2)`` at every section, mean over the cycle.  From end to end of the face
-it is the equivalent misalignment f_sh of ISO 6336-1, 7.5.2, here with bending, tilting and the wind-up
-of both shafts within the face, which that of one lumped point does not have.
+**Askew.**  How far flanks open along the face before they touch, by the supports under the load that
+the train at rest has, spread evenly along the face, of planets with the moment of their springs: at the
+pitch line, as ``n . (u1 - u2)`` in the transverse plane.  From end to end of the face it is the
+equivalent misalignment f_sh of ISO 6336-1, 7.5.2, as `deflect` has it, here with bending, tilting and
+the wind-up of both shafts within the face, which that of one lumped point does not have.  Where teeth
+then carry, and how far they stay askew, is the contact.
 """
 
 from __future__ import annotations
@@ -11,10 +13,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from math import cos
-from typing import Any
+from typing import Any, Self
 
 import numpy as np
 
+from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.flank_shape import shape_opening
 from solidgear.core.gears.norm import NormStiffness, norm_face_load_factor, norm_stiffness
 from solidgear.core.gears.wheel_pair import WheelPair
@@ -23,9 +26,15 @@ from solidgear.teeth.contact.cells import ToothedPair
 from solidgear.teeth.contact.cycle import MeshCycle, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Supports
+from solidgear.trains.file.lengths import in_mm
 
 #: orders of the transmission error that are listed
 ORDERS = 5
+#: normal modules that teeth may give way by: steel breaks at a thirtieth, soft plastics at a tenth;
+#: pressure between hard rolling bodies that stay elastic, N/m^2 (ISO 76, roller bearings)
+MOST_BENT, ELASTIC = 0.25, 4e9
+#: rim that is worth a sentence, modules: one of four is 7 % softer than a solid wheel, by plane strain
+THIN_RIM = 4.0
 #: share of the load on corners that is worth a sentence; load of a slice that is none, of the mean;
 #: face load factor from which an end that carries most is worth one
 CORNER, IDLE, EDGE = 0.02, 1e-3, 1.2
@@ -33,7 +42,9 @@ CORNER, IDLE, EDGE = 0.02, 1e-3, 1.2
 
 @dataclass(frozen=True)
 class Skew:
-    """How far flanks open from one end of the face to the other, m; positive towards larger w."""
+    """How far flanks open from one end of the face to the other in the transverse plane, m; positive
+    towards larger y of the first wheel's scene, of planets and rings of the sun's.
+    """
 
     bending: float  #: by bending and tilting of both shafts, with bearings and housing
     turning: float  #: by the wind-up of both bodies within the face
@@ -65,6 +76,33 @@ class SolvedMesh:
     def teeth(self) -> ToothedPair:
         """Both wheels as their contact needs them."""
         raise NotImplementedError
+
+    @property
+    def module(self) -> float:
+        """Normal module, at the middle of the face, m."""
+        raise NotImplementedError
+
+    def within_reach(self) -> Self:
+        """Return the same; refused for teeth that give way by so much that nothing here holds."""
+        given = max(position.total / position.tangent for position in self.cycle.positions)
+        if given > MOST_BENT * self.module:
+            raise SolidgearError(
+                f"teeth of the {self.name} would give way by {1e3 * given:.3g} mm under {self.cycle.force:.4g} "
+                f"N, {given / self.module:.2g} of their module of {in_mm(self.module)}: no teeth do so "
+                "and stay whole; correct torque, face width, module or bore"
+            )
+        return self
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on what the numbers leave out."""
+        if self.cycle.pressure <= ELASTIC:
+            return ()
+        return (
+            f"the largest pressure of the {self.name}, {self.cycle.pressure / 1e9:.2g} GPa, is above "
+            f"{ELASTIC / 1e9:g} GPa, which no steel bears without lasting dents (ISO 76); the contact "
+            "is computed as if it were elastic",
+        )
 
     @property
     def status(self) -> str:
@@ -144,6 +182,9 @@ class MeshContact(SolvedMesh):
     """
 
     pair: CylindricalPair
+    along: int  #: 1 where face places grow along y of the first wheel's scene, else -1
+    #: of both wheels from the bore to the roots, modules; None of solid ones and rings
+    rims: tuple[float | None, float | None]
 
     @property
     def teeth(self) -> ToothedPair:
@@ -171,6 +212,24 @@ class MeshContact(SolvedMesh):
         return self.pair.wheels
 
     @property
+    def module(self) -> float:
+        """Normal module, m."""
+        return self.wheels.first.module
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on what the numbers leave out."""
+        thin = [rim for rim in self.rims if rim is not None and rim < THIN_RIM]
+        if not thin:
+            return super().cautions
+        return (
+            *super().cautions,
+            f"{self.name}: a rim of {min(thin):.2g} modules below the roots softens the teeth; it is taken "
+            "as free at its bore, with nothing beside the face. What stands beside it makes the teeth "
+            "stiffer, at most as stiff as on a solid wheel: the error bar holds that",
+        )
+
+    @property
     def line_load(self) -> float:
         """Transverse force per face width, N/m."""
         transverse = self.cycle.force * cos(self.wheels.base_helix)
@@ -179,7 +238,8 @@ class MeshContact(SolvedMesh):
     @cached_property
     def norm(self) -> NormStiffness:
         """Stiffnesses by ISO 6336-1."""
-        return norm_stiffness(self.wheels, self.line_load)
+        first, second = (material.youngs for material in self.pair.law.materials)
+        return norm_stiffness(self.wheels, self.line_load, (first, second))
 
     def along_line(self, specific: float) -> float:
         """Return the stiffness along the line of action, N/m, of a specific one, N/m per m."""
@@ -187,23 +247,15 @@ class MeshContact(SolvedMesh):
 
     @cached_property
     def skew(self) -> Skew:
-        """How the flanks lie askew under load."""
-        face, wheels = self.wheels.face_width, self.wheels
-        ends = np.array([-face / 2, face / 2])
-        shape = shape_opening(wheels, self.pair.shapes)
-        point = np.column_stack([np.zeros(2), np.zeros(2), ends])
-        normal = np.tile(self.cycle.positions[0].cells.normal[0], (2, 1))
-        rows = self.supports.opening(point, normal)
-        across = rows[1] - rows[0]
-        motion = np.mean(
-            [
-                self.supports.motion
-                + self.supports.compliance @ (position.force @ self.supports.rows(position.cells))
-                for position in self.cycle.positions
-            ],
-            axis=0,
-        )
-        turning = float(across @ self.supports.turning @ motion)
+        """How the flanks lie askew under the load of the train at rest."""
+        supports, face = self.supports, self.wheels.face_width
+        points = np.column_stack([np.zeros((2, 2)), [-face / 2, face / 2]])
+        normals = np.tile(self.cycle.positions[0].cells.normal[0], (2, 1))
+        first, last = supports.opening(points, normals)
+        across = self.along * (last - first) / cos(self.wheels.base_helix)
+        motion = supports.motion + supports.compliance @ supports.spread
+        turning = float(across @ supports.turning @ motion)
+        shape = self.along * shape_opening(self.wheels, self.pair.shapes)
         return Skew(float(across @ motion) - turning, turning, shape)
 
     @property

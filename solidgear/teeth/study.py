@@ -232,7 +232,7 @@ def _contact(
         stiffness={mesh.name: stated_stiffness(train, mesh.name) for mesh in teeth},
         bars=bars,
         ladders=tuple(ladders),
-        cautions=tuple(carried.state.notes),
+        cautions=(*carried.state.notes, *(line for mesh in meshes for line in mesh.cautions)),
         seconds=perf_counter() - start,
     )
 

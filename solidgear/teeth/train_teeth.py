@@ -7,18 +7,20 @@ the load lies along the face, and for nothing else there.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core import Scene, SceneError
+from solidgear.core import SceneError
 from solidgear.core.gears.wheel import Wheel
+from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
 from solidgear.teeth.compliance.flank import FlankCompliance
-from solidgear.teeth.compliance.plane import DEPTH, HUB, PlaneTeeth
-from solidgear.teeth.compliance.slices import SPREAD, Slices
+from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM
+from solidgear.teeth.compliance.slices import SPREAD, HelicalSlices
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, harmonics, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
@@ -28,19 +30,22 @@ from solidgear.teeth.mesh_contact import ORDERS, MeshContact
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
+from solidgear.trains.file.gears import Member
+from solidgear.trains.file.lengths import in_mm
 from solidgear.trains.file.mesh_cycle import StiffnessCycle
-from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
+from solidgear.trains.file.mesh_teeth import MeshTeeth, gears_of, material_of, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
 from solidgear.trains.file.tables import TEETH, ErrorTable, Mesh
 from solidgear.trains.file.tip_rules import tip_problems
+from solidgear.trains.file.tooth_fit import parting_teeth
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of, other_flank
 from solidgear.trains.load.operation import Operating
 
-#: bore below which a wheel is solid, of its root radius
-THINNEST = HUB
+#: bore below which a wheel is solid, of its root radius; least rim below the roots, modules
+SMALL_BORE, LEAST_RIM = HUB, 2 * PORT
 
 
 @dataclass(frozen=True)
@@ -59,6 +64,9 @@ class TeethModel:
         Depth of readings below the flank, modules.
     spread : float
         How far a slice moves others along the face, modules; of slices alone.
+    beside : bool
+        Whether wheels are as stiff as a thick shaft beside the face makes them: solid whatever their
+        bore, and not bent out of their plane.
 
     Examples
     --------
@@ -73,19 +81,30 @@ class TeethModel:
     coarse: bool = False
     depth: float = DEPTH
     spread: float = SPREAD
+    beside: bool = False
 
     def compliance(self, wheel: Wheel, body: WheelBody) -> FlankCompliance:
         """Return the compliance of a wheel's teeth."""
         depth = self.depth * wheel.module
+        bore = None if self.beside else body.bore
         if self.name == "slices":
-            plane = PlaneTeeth(wheel, hold=body.hold, elasticity=body.elasticity)
-            plane = plane.coarser if self.coarse else plane
-            return Slices(plane, body.face_width, self.slices, depth, self.spread)
+            return HelicalSlices.of(
+                wheel,
+                body.face_width,
+                self.slices,
+                bore,
+                body.elasticity,
+                self.coarse,
+                depth,
+                self.spread,
+                disc=not self.beside,
+            )
         solid = SolidTeeth(
             wheel,
-            hold=body.hold,
+            hold=bore,
             reading_depth=depth,
             elasticity=body.elasticity,
+            free=bore is not None,
             hand=body.hand,
             width=body.face_width,
             offset=body.offset,
@@ -99,9 +118,8 @@ class WheelBody:
     """What carries the teeth of a wheel, and the face that it shares."""
 
     elasticity: Elasticity
-    #: radius at which the body ends: its bore, or the seat of a wheel that is no part of its shaft, m;
-    #: None where it is solid
-    hold: float | None
+    #: radius of the bore of its shaft, m; None where it is solid
+    bore: float | None
     hand: int  #: as of :class:`solidgear.teeth.compliance.solid.SolidTeeth`
     face_width: float  #: shared, m
     offset: float  #: of its middle from that of the wheel's face, m
@@ -122,8 +140,8 @@ def teeth_of(mesh: Pair | PlanetMesh, coast: bool) -> MeshTeeth:
             "is missing; contact of teeth needs it of one of both wheels",
             path=(*path, "face_width"),
         )
-    if not teeth.wheels.contact_ratio > 0:
-        raise SceneError("has tips that do not reach each other", path=path)
+    if parting := parting_teeth(teeth.wheels):
+        raise SceneError(parting, path=(*path, "teeth" if isinstance(mesh, Pair) else "mesh"))
     cutting = tip_problems(mesh, teeth.wheels, solved=True)
     if isinstance(mesh, Pair):
         cutting = mesh.with_file_paths(cutting)
@@ -148,39 +166,54 @@ def wheel_bodies(mesh: Pair | PlanetMesh, teeth: MeshTeeth) -> tuple[WheelBody, 
     wheels = teeth.wheels
     bodies = []
     for wheel, gear, hand, middle in zip(
-        (wheels.first, wheels.second), _gears(mesh), (1, -1), wheels.face_middles
+        (wheels.first, wheels.second), gears_of(mesh), (1, -1), wheels.face_middles
     ):
-        scene, rigid = gear
-        material = Elasticity() if scene is None else _material(scene)
-        hold = None if scene is None else _hold(scene, wheel, rigid)
-        bodies.append(WheelBody(material, hold, hand, wheels.face_width, -middle))
+        material = Elasticity() if gear is None else _elasticity(gear)
+        bore = None if gear is None else _bore(gear, wheel)
+        bodies.append(WheelBody(material, bore, hand, wheels.face_width, -middle))
     return bodies[0], bodies[1]
 
 
-def _gears(mesh: Pair | PlanetMesh) -> list[tuple[Scene | None, bool]]:
-    """Return the scene that carries each wheel, if any, and whether the wheel is a rigid mass on it."""
+def rims_of(wheels: WheelPair, bodies: Sequence[WheelBody]) -> tuple[float | None, float | None]:
+    """Return how thick both wheels are from their bores to the roots of their teeth, modules; None of
+    solid ones and rings.
+    """
+    first, second = (
+        None if body.bore is None else (wheel.root - body.bore) / wheel.module
+        for wheel, body in zip((wheels.first, wheels.second), bodies)
+    )
+    return first, second
+
+
+def assumed_bodies(mesh: Pair | PlanetMesh) -> tuple[str, ...]:
+    """Return sentences on the bodies of wheels that the file does not describe."""
     if isinstance(mesh, Pair):
-        return [(member.scene, member.head is not None) for member in mesh.members.values()]
-    # planets and rings are rigid bodies of the train, of steel
-    return [(None, True), (None, True)]
+        heads = [side for side, gear in zip(mesh.shafts, gears_of(mesh)) if gear and gear.head]
+        return tuple(
+            f"wheel of the {side} of its shaft's material, solid to the shaft" for side in heads
+        )
+    ring = f"ring of steel, with a rim of {RIM:g} modules that is held around its outside"
+    return ("planets of steel, solid", *([ring] if mesh.mate == "ring" else []))
 
 
-def _material(scene: Scene) -> Elasticity:
-    segments = scene.segments_at(scene.port.y)
-    material = segments[0].material if segments else scene.material
+def _elasticity(gear: Member) -> Elasticity:
+    material = material_of(gear)
     return Elasticity(material.E, material.nu)
 
 
-def _hold(scene: Scene, wheel: Wheel, rigid: bool) -> float | None:
-    """Return the radius at which the body of a wheel ends: its bore, the seat of a wheel that is no
-    part of its shaft, or none where it is solid.
+def _bore(gear: Member, wheel: Wheel) -> float | None:
+    """Return the radius of the bore of a gear's shaft, m, or none where it is solid: a wheel that is no
+    part of its shaft sits on it, and both carry the teeth together.
     """
-    y = scene.port.y
-    radii = [segment.radius_at(y) for segment in scene.segments_at(y)]
-    inner, outer = (max(values) for values in zip(*radii))
-    radius = outer if rigid else inner
-    deepest = wheel.root - 1.5 * wheel.module
-    return radius if THINNEST * wheel.root < radius < deepest else None
+    y = gear.scene.port.y
+    bore = max((segment.radius_at(y)[0] for segment in gear.scene.segments_at(y)), default=0.0)
+    if bore > wheel.root - LEAST_RIM * wheel.module:
+        raise SceneError(
+            f"leaves no rim: a bore of {in_mm(2 * bore)} at the gear, whose teeth have their roots at "
+            f"{in_mm(2 * wheel.root)} across; correct the bore, the teeth or their module",
+            path=("scene",),
+        )
+    return bore if bore > SMALL_BORE * wheel.root else None
 
 
 def mesh_contact(
@@ -191,21 +224,24 @@ def mesh_contact(
     """
     model = model or TeethModel()
     teeth = teeth_of(mesh, carried.coast(mesh))
-    wheels = teeth.wheels, model, wheel_bodies(mesh, teeth)
+    bodies = wheel_bodies(mesh, teeth)
+    wheels = teeth.wheels, model, bodies
     if wheels not in carried.pairs:
         carried.pairs[wheels] = toothed(mesh, teeth, model)
     contact = carried.pairs[wheels].with_shapes(teeth.shapes)
     place = carried.place(mesh, teeth)
-    supports = carried.supports(place, Frame.of(place, teeth))
+    supports = carried.supports(mesh, place, Frame.of(place, teeth))
     torque = carried.force(place) * teeth.wheels.first.base * np.cos(teeth.wheels.base_helix)
     base = teeth.wheels.first.base
     return MeshContact(
         name=mesh.name,
         pair=contact,
+        along=teeth.along[0],
+        rims=rims_of(teeth.wheels, bodies),
         supports=supports,
         cycle=mesh_cycle(contact, torque, base, model.slices, supports, model.positions),
-        assumed=teeth.assumed,
-    )
+        assumed=(*teeth.assumed, *assumed_bodies(mesh)),
+    ).within_reach()
 
 
 def solved_mesh(
@@ -214,7 +250,7 @@ def solved_mesh(
     """Solve the contact of any mesh over its cycle; bevel teeth are of slices."""
     if isinstance(mesh, Pair) and mesh.mesh.shaft_angle:
         model = model or TeethModel()
-        materials = [_material(member.scene) for member in mesh.members.values()]
+        materials = [_elasticity(member) for member in mesh.members.values()]
         both = materials[0], materials[1]
         return bevel_contact(carried, mesh, both, model.slices, model.positions)
     return mesh_contact(carried, mesh, model)

@@ -169,8 +169,8 @@ def shape_gap(
 
 def shape_opening(wheels: WheelPair, shapes: tuple[FlankShape, FlankShape]) -> float:
     """Return how far the shapes of both flanks open over the shared face towards larger face places, at
-    the pitch point, m.
+    the pitch point in the transverse plane, m.
     """
     ends = np.array([-0.5, 0.5]) * wheels.face_width
     start, stop = shape_gap(wheels, shapes, np.full(2, wheels.pitch_point), ends)
-    return float(stop - start)
+    return float(stop - start) / cos(wheels.base_helix)

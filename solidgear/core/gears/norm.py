@@ -9,7 +9,9 @@ numbers of teeth ``zn = z / (cos^2 beta_b cos beta)`` and the profile shifts:
 
 with CM = 0.8, which measurements ask for, CR = 1 for solid wheels and CB for another rack; below
 100 N/mm c' falls with the fourth root of the line load.  All of them count the transverse error per
-transverse force.
+transverse force.  They are those of steel; for other materials they are multiplied by
+
+    E / E_steel,    E = 2 E1 E2 / (E1 + E2),    E_steel = 206 GPa.
 
 A face that lies askew by F over its width b, under the force per width q, has the face load factor
 
@@ -27,6 +29,8 @@ from solidgear.core.gears.wheel_pair import WheelPair
 
 #: N/(mm um) in N/m per m
 UNIT = 1e9
+#: modulus of elasticity of the norm's steel, N/m^2
+STEEL = 2.06e11
 #: what measurements leave of the theory; line load below which it falls, N/m
 CORRECTION, LEAST_LINE_LOAD = 0.8, 1e5
 #: of the mesh stiffness that counts along the face
@@ -35,16 +39,20 @@ ALONG_FACE = 0.85
 
 @dataclass(frozen=True)
 class NormStiffness:
-    """Stiffnesses of a pair of steel wheels with solid bodies, N/m per m of face."""
+    """Stiffnesses of a pair of wheels with solid bodies, N/m per m of face."""
 
     theoretical: float  #: c'th
     single: float  #: c'
     mesh: float  #: c_gamma_alpha
 
 
-def norm_stiffness(wheels: WheelPair, line_load: float | None = None) -> NormStiffness:
+def norm_stiffness(
+    wheels: WheelPair,
+    line_load: float | None = None,
+    moduli: tuple[float, float] = (STEEL, STEEL),
+) -> NormStiffness:
     """Return the stiffnesses by the norm; `line_load` in N/m of the transverse force per face width,
-    by default large enough.
+    by default large enough, `moduli` of elasticity of both wheels in N/m^2.
 
     Examples
     --------
@@ -64,11 +72,22 @@ def norm_stiffness(wheels: WheelPair, line_load: float | None = None) -> NormSti
         z2 = second.count / (cos(base_helix) ** 2 * cos(helix))
     softness = 0.04723 + 0.15551 / z1 + 0.25791 / z2 - 0.00635 * x1 - 0.11654 * x1 / z1
     softness += -0.00193 * x2 - 0.24188 * x2 / z2 + 0.00529 * x1**2 + 0.00182 * x2**2
-    theoretical = UNIT / softness
+    theoretical = UNIT / softness * material_factor(*moduli)
     single = theoretical * CORRECTION * cos(helix) * _rack_factor(wheels)
     if line_load is not None and line_load < LEAST_LINE_LOAD:
         single *= (line_load / LEAST_LINE_LOAD) ** 0.25
     return NormStiffness(theoretical, single, single * (0.75 * wheels.contact_ratio + 0.25))
+
+
+def material_factor(first: float, second: float) -> float:
+    """Return E / E_steel of wheels with these moduli of elasticity, N/m^2.
+
+    Examples
+    --------
+    >>> round(material_factor(206e9, 3e9), 4)
+    0.0287
+    """
+    return 2 * first * second / (first + second) / STEEL
 
 
 def _rack_factor(wheels: WheelPair) -> float:

@@ -22,7 +22,7 @@ from solidgear.core.gears.norm import norm_face_load_factor, norm_stiffness
 from solidgear.strength.deflection.misalignment import PARALLELS, meshes_of
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.stages import mesh_row
-from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
+from solidgear.trains.file.mesh_teeth import MeshTeeth, moduli_of, wheels_of
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
 
@@ -73,7 +73,7 @@ def face_loads(
         line_load = transverse / wheels.face_width
         if line_load == 0:
             continue
-        stiffness = norm_stiffness(wheels, line_load).mesh
+        stiffness = norm_stiffness(wheels, line_load, moduli_of(mesh)).mesh
         skew, bar = skews[name]
         shape = teeth.along[0] * shape_opening(wheels, teeth.shapes)
         factors = [

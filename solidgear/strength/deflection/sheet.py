@@ -176,7 +176,7 @@ def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
         for load in deflected.face_loads
     ]
     note = (
-        "By c_ga of steel teeth, f_sh and slopes of the file's flanks, without further deviations and "
+        "By c_ga of the materials, f_sh and slopes of the file's flanks, without further deviations and "
         "running-in; line load: transverse force per face width. solidgear contact solves the teeth."
     )
     return [Table("Face load factor by ISO 6336-1", columns, rows, note)]

@@ -69,6 +69,11 @@ class BevelContact(SolvedMesh):
         return self.pair
 
     @property
+    def module(self) -> float:
+        """Normal module at the middle of the face, m."""
+        return self.pair.flanks.blank.module
+
+    @property
     def estimated(self) -> bool:
         """Whether cutter or mismatch are."""
         return self.eased or "cutter_radius" in self.pair.flanks.blank.estimated
@@ -207,7 +212,7 @@ def bevel_contact(
     mismatch = mismatch_of(pair, blank)
     toothed = toothed_bevel(blank, materials, mismatch, slices)
     place = place_of_pair(carried.assembly, carried.system, pair)
-    supports = carried.supports(place, apex_frame(carried, pair, blank))
+    supports = carried.supports(pair, place, apex_frame(carried, pair, blank))
     lever = carried.assembly.contacts[pair.name].pinion.lever
     torque = abs(float(carried.force(place) * lever))
 
@@ -218,4 +223,4 @@ def bevel_contact(
         cycle=mesh_cycle(toothed, torque, toothed.base, slices, supports, positions),
         assumed=assumed(blank, mismatch),
         eased=mismatch is None,
-    )
+    ).within_reach()

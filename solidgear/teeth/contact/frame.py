@@ -40,7 +40,7 @@ class Stations:
 
     def rows(self, point: np.ndarray, normal: np.ndarray, frame: Frame) -> np.ndarray:
         """Return the (n, 6 m) motion of points along normals, both (n, 3) in the frame of the pair, by
-        the six motions of every station in the axes of the first shaft; linear between stations.
+        the six motions of every station in the axes of the first shaft; linear along the face.
         """
         points = frame.origin + point @ frame.axes.T
         normals = normal @ frame.axes.T
@@ -52,10 +52,13 @@ class Stations:
 
 
 def _between(place: np.ndarray, z: np.ndarray) -> np.ndarray:
-    """Return the (n, m) weights of stations at places, linear between and constant beyond."""
-    out = np.zeros((len(z), len(place)))
-    for k, hat in enumerate(np.eye(len(place))):
-        out[:, k] = np.interp(z, place, hat)
+    """Return the (n, m) weights of stations at places, linear between and beyond."""
+    if len(place) < 2:
+        return np.ones((len(z), len(place)))
+    out, each = np.zeros((len(z), len(place))), np.arange(len(z))
+    before = np.clip(np.searchsorted(place, z) - 1, 0, len(place) - 2)
+    share = (z - place[before]) / (place[before + 1] - place[before])
+    out[each, before], out[each, before + 1] = 1 - share, share
     return out
 
 
@@ -71,6 +74,8 @@ class Supports:
     stations: tuple[Stations, Stations]
     compliance: np.ndarray  #: (N, N)
     motion: np.ndarray  #: (N,) under all other loads
+    #: (N,) load of the teeth where the train is at rest, spread over the face
+    spread: np.ndarray
     #: rows that were computed, by the points and normals of cells
     _rows: dict[bytes, np.ndarray] = field(default_factory=dict, init=False, repr=False)
 

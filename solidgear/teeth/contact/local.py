@@ -33,6 +33,8 @@ from math import pi
 
 import numpy as np
 
+from solidgear.core.gears.norm import STEEL
+
 #: least line load of a cell, N/m: the Hertz law has no slope at zero
 LEAST_LOAD = 1e-3
 
@@ -41,7 +43,7 @@ LEAST_LOAD = 1e-3
 class Elasticity:
     """Elastic constants of the teeth of one wheel."""
 
-    youngs: float = 2.06e11  #: N/m^2
+    youngs: float = STEEL  #: N/m^2
     poisson: float = 0.3
 
     @property

@@ -17,9 +17,11 @@ from typing import Protocol
 
 from solidgear.bearings.solved import AS_STATED, Choice
 from solidgear.core import SceneError, SolidgearError, addition
-from solidgear.trains.file.mesh_teeth import wheels_of
+from solidgear.core.gears.norm import material_factor
+from solidgear.trains.file.mesh_teeth import moduli_of, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
+from solidgear.trains.file.planetary import PlanetMesh
 from solidgear.trains.file.solved_meshes import SolvedMeshes, load_of
 from solidgear.trains.file.tables import TEETH
 from solidgear.trains.file.train import Train
@@ -134,11 +136,13 @@ def solved_meshes(trains: Mapping[OperatingPoint, Train]) -> SolvedMeshes:
 
 
 def with_usual_meshes(train: Train) -> Train:
-    """Return a train with the usual stiffness of steel teeth where they are to give it."""
+    """Return a train with the usual stiffness of teeth where they are to give it."""
     if not asks_for_teeth(train):
         return train
     meshes = [
-        pair.mesh.with_changes(stiffness=USUAL * _face_width(pair), status="estimated")
+        pair.mesh.with_changes(
+            stiffness=usual_stiffness(pair) * _face_width(pair), status="estimated"
+        )
         if pair.mesh.stiffness == TEETH
         else pair.mesh
         for pair in train.pairs
@@ -147,12 +151,20 @@ def with_usual_meshes(train: Train) -> Train:
     for stage in train.stages:
         mesh = stage.table.mesh
         width = stage.sun.face_width or 0.0
-        keys = [k for k in ("sun_stiffness", "ring_stiffness") if getattr(mesh, k) == TEETH]
-        changes = dict.fromkeys(keys, USUAL * width)
+        changes = {
+            f"{both.mate}_stiffness": usual_stiffness(both) * width
+            for both in stage.together
+            if getattr(mesh, f"{both.mate}_stiffness") == TEETH
+        }
         if changes:
             mesh = mesh.with_changes(**changes, status="estimated")
         planetary[stage.called] = stage.table.with_changes(mesh=mesh)
     return train.with_changes(meshes=tuple(meshes), planetary=planetary)
+
+
+def usual_stiffness(mesh: Pair | PlanetMesh) -> float:
+    """Return the usual mesh stiffness of teeth per face width, by their materials, N/m^2."""
+    return USUAL * material_factor(*moduli_of(mesh))
 
 
 def has_settled(train: Train) -> bool:

@@ -10,6 +10,7 @@ from solidgear.core.gears.wheel import Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.scene.units import TYPED
 from solidgear.trains.file.flanks import Flanks, MeasuredFlank, ReliefTable, radius_at, roll_length
+from solidgear.trains.file.gears import Member
 from solidgear.trains.file.lengths import in_mm
 from solidgear.trains.file.mesh_teeth import wheels_of
 from solidgear.trains.file.pairs import Pair
@@ -19,6 +20,8 @@ from solidgear.trains.file.tip_rules import pointed_problem, tip_problems
 
 #: keys that say how much is missing, all along the face
 ALONG_FACE = ("crowning", "helix_slope")
+#: least share of a face that lies on its shaft
+LEAST_ON_SHAFT = 0.5
 
 
 def flank_problems(pair: Pair) -> Iterator[SceneError]:
@@ -28,6 +31,8 @@ def flank_problems(pair: Pair) -> Iterator[SceneError]:
         yield _needed("face_width")
     if pair.mesh.shaft_angle:
         return
+    for side, gear in gears.items():
+        yield from _off_shaft(gear, (side,))
     described = [side for side, gear in gears.items() if gear.is_described]
     try:
         teeth = wheels_of(pair)
@@ -70,6 +75,7 @@ def stage_flank_problems(stage: Stage) -> Iterator[SceneError]:
             f'teeth give a stiffness (stiffness = "{TEETH}")',
             path=("sun",),
         )
+    yield from _off_shaft(sun, ("sun",))
     flanks = {
         ("sun",): (sun, 0, 0),
         ("planet",): (table.planet, 0, 1),
@@ -111,6 +117,22 @@ def _reach(wheels: WheelPair, gears: Mapping[str, Flanks]) -> Iterator[SceneErro
             f"is too small: tips at {in_mm(wheels.first.tip)} and {in_mm(wheels.second.tip)} do not "
             f"reach each other, with axes {in_mm(wheels.distance)} apart; correct it or leave it out",
             path=(given[0], "tip_diameter"),
+        )
+
+
+def _off_shaft(gear: Member, path: tuple) -> Iterator[SceneError]:
+    """Yield a problem of a gear that is part of its shaft, with less than half of its face on it."""
+    scene, width = gear.scene, gear.face_width
+    if gear.head is not None or not width:
+        return
+    middle = scene.port.y + gear.face_offset
+    start, end = max(middle - width / 2, 0.0), min(middle + width / 2, scene.length)
+    if end - start < LEAST_ON_SHAFT * width:
+        yield SceneError(
+            f"puts {in_mm(max(end - start, 0.0))} of the face on the shaft, which is "
+            f"{in_mm(scene.length)} long, with the middle of the face at {in_mm(middle)}; correct "
+            "face_width, face_offset or the place of the gear",
+            path=(*path, "face_width"),
         )
 
 

@@ -12,11 +12,13 @@ from dataclasses import dataclass
 from math import ceil, cos, degrees, radians
 
 from solidgear.core.gears.flank_shape import FlankShape, Relief
+from solidgear.core.gears.norm import STEEL
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
+from solidgear.core.scene.parts import Material
 from solidgear.trains.file.cylindrical import first_given
 from solidgear.trains.file.flanks import Flanks, RackTable, ReliefTable, roll_length
-from solidgear.trains.file.gears import FLANKS, Gear
+from solidgear.trains.file.gears import FLANKS, Gear, Member
 from solidgear.trains.file.lengths import in_mm
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
@@ -82,6 +84,27 @@ def wheels_of(mesh: Pair | PlanetMesh, coast: bool | None = None) -> MeshTeeth |
     if isinstance(mesh, PlanetMesh):
         return _of_planets(mesh, bool(coast))
     return _of_pair(mesh, coast)
+
+
+def gears_of(mesh: Pair | PlanetMesh) -> tuple[Member | None, Member | None]:
+    """Return the gears of a mesh on their shafts, the first first; None for planets and rings, which are
+    bodies of the train.
+    """
+    if isinstance(mesh, Pair):
+        return mesh.pinion, mesh.gear
+    return (mesh.stage.sun if mesh.mate == "sun" else None), None
+
+
+def material_of(gear: Member) -> Material:
+    """Return the material of a gear: that of its shaft where it sits."""
+    segments = gear.scene.segments_at(gear.scene.port.y)
+    return segments[0].material if segments else gear.scene.material
+
+
+def moduli_of(mesh: Pair | PlanetMesh) -> tuple[float, float]:
+    """Return the moduli of elasticity of both wheels, N/m^2; planets and rings are of steel."""
+    first, second = (STEEL if gear is None else material_of(gear).E for gear in gears_of(mesh))
+    return first, second
 
 
 def _of_pair(pair: Pair, coast: bool | None) -> MeshTeeth | None:

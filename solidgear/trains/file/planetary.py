@@ -18,7 +18,7 @@ from solidgear.core.scene.planetary_teeth import PlanetaryTeeth
 from solidgear.core.scene.stations import Status
 from solidgear.core.scene.units import MeshSpring, PressureAngle, TorsionSpring
 from solidgear.trains.file.flanks import Flanks
-from solidgear.trains.file.gears import Gear, HeadInertia, Shaft, Teeth
+from solidgear.trains.file.gears import HeadInertia, Member, Shaft, Teeth
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.tables import Azimuth, Error, ErrorTable, MeshStiffness, solved
 
@@ -189,7 +189,7 @@ class Stage:
     called: str
     shafts: tuple[str, str]
     ports: tuple[str, str]
-    sun: Gear
+    sun: Member
     table: Planetary
 
     @property
@@ -255,9 +255,9 @@ def stage_of(name: str, table: Planetary, shafts: Mapping[str, Shaft]) -> Stage:
     """Return a planetary stage on the shafts of a train."""
     sun, _, port = table.sun.partition(".")
     carrier, _, flange = table.carrier.partition(".")
-    gears, flange = shafts[sun].gears, flange or shafts[carrier].scene.port.name
-    port = port or next(iter(gears))
-    return Stage(name, (sun, carrier), (port, flange), gears[port], table)
+    flange = flange or shafts[carrier].scene.port.name
+    port = port or next(iter(shafts[sun].gears))
+    return Stage(name, (sun, carrier), (port, flange), shafts[sun].member(port), table)
 
 
 def error_of(driver: Pair | PlanetMesh) -> ErrorTable:

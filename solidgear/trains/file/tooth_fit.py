@@ -105,12 +105,19 @@ def fit_cautions(fit: WheelPair, sides: tuple[str, str]) -> Iterator[str]:
             yield cut_caution(fit, k, sides)
         elif is_described:
             yield from _flank_lost(fit, 1 - k, sides)
-    if fit.contact_ratio + fit.overlap_ratio < 1:
-        helical = f" and {fit.overlap_ratio:.2f} by their helix" if fit.base_helix else ""
-        yield (
-            f"the contact ratio is {fit.contact_ratio:.2f}{helical}, below 1: no teeth touch for a "
-            "part of each pitch; correct centre distance, profile shifts, module or teeth"
-        )
+    if parting := parting_teeth(fit):
+        yield parting
+
+
+def parting_teeth(fit: WheelPair) -> str:
+    """Return a sentence on wheels of which no teeth touch for a part of each pitch, or nothing."""
+    if fit.contact_ratio + fit.overlap_ratio >= 1:
+        return ""
+    helical = f" and {fit.overlap_ratio:.2f} by their helix" if fit.base_helix else ""
+    return (
+        f"the contact ratio is {fit.contact_ratio:.2f}{helical}, below 1: no teeth touch for a "
+        "part of each pitch; correct tips, centre distance, profile shifts, module or teeth"
+    )
 
 
 def _flank_lost(fit: WheelPair, k: int, sides: tuple[str, str]) -> Iterator[str]:

@@ -398,9 +398,14 @@ class Train(Model):
         return usual and len(self.meshes) == 1
 
     def gear_path(self, side: str, port: str) -> tuple:
-        """Return the keys of a gear in a file."""
-        inside = ("gears", port) if len(self.shafts[side].gears) > 1 else ()
-        return (side,) if self.short else ("shaft", side, *inside)
+        """Return the keys of a gear in a file, which may have the only one of a shaft in the shaft's
+        table.
+        """
+        if self.short:
+            return (side,)
+        tables = {} if self.document is None else self.document.tables.get("shaft", {})
+        apart = len(self.shafts[side].gears) > 1 or "gears" in tables.get(side, {})
+        return ("shaft", side, "gears", port) if apart else ("shaft", side)
 
     def shaft_path(self, side: str) -> tuple:
         """Return the keys of a shaft in a file."""

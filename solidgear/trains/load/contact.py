@@ -268,6 +268,8 @@ def _needs(pair: Pair, *keys: str, reason: str) -> None:
     words = dict.fromkeys(GEOMETRY, "")
     if parallel:
         words["loaded_side"] = ': write "left" or "right", the flank that carries the torque'
+    if parallel and pair.pinion.hand is not None:
+        words["spiral_angle"] = ": helical teeth have a hand; leave hand out for straight teeth"
     if parallel and straight and pair.pinion.loaded_side not in CURVED:
         missing = [key for key in missing if key != "hand"]  # straight teeth have none
     elif straight and {"hand", "loaded_side"} & set(missing):
@@ -414,8 +416,8 @@ def _refuse_point_off_head(pair: Pair, side: str, point: np.ndarray, tip: float)
     radius = float(np.hypot(point[0], point[2]))
     y = port.y + (point[1] if apex == "start" else -point[1])
     slack = OUTSIDE_LENGTH * (port.hi - port.lo)
-    path = ("mesh", "point") if pair.mesh.point is not None else ("mesh",)
     member = pair.members[side]
+    given = ("mesh", "point") if pair.mesh.point is not None else ()
     if radius > most * (1 + OUTSIDE_RADIUS) and member.head and not member.pitch_radius:
         raise SceneError(
             "is missing; a wheel as a rigid head needs it, since the mesh point lies "
@@ -427,13 +429,13 @@ def _refuse_point_off_head(pair: Pair, side: str, point: np.ndarray, tip: float)
         raise SceneError(
             f"the mesh point lies {1e3 * radius:.1f} mm from the axis of the {side}, off the "
             f"{side}, whose largest radius is {1e3 * most:.1f} mm",
-            path=path,
+            path=given or (side, "pitch_radius" if member.pitch_radius else "module"),
         )
     if not port.lo - slack <= y <= port.hi + slack:
         raise SceneError(
             f"the mesh point lies at y = {1e3 * y:.1f} mm of the {side}'s shaft, off its head "
             f"from {1e3 * port.lo:.1f} to {1e3 * port.hi:.1f} mm",
-            path=path,
+            path=given or (side, "face_offset"),
         )
 
 
