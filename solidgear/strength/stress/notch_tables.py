@@ -271,7 +271,8 @@ def not_rated(stress: ShaftStress, units: Units = ENGINEERING) -> Iterator[str]:
     """Yield the sharp corners of a shaft, whose safety may be less than any that is shown, and the
     features without a rating.
     """
-    for corner in stress.sharp:
-        yield f"sharp corner at y = {units.text(corner.y, 'm')}"
+    places = [units.text(corner.y, "m") for corner in stress.sharp]
+    if places:
+        yield f"sharp corner{'s' if len(places) > 1 else ''} at y = {listed(places, most=6)}"
     for feature in stress.unrated:
         yield f'{feature.kind} "{feature.name}"'
