@@ -113,3 +113,7 @@ def test_the_text_of_a_file_whose_hold_changes_its_tie_reads_back(tmp_path):
         tied = scene.with_attachment(attachment)
         (tmp_path / "tied.toml").write_text(tied.to_toml())
         assert sg.load(tmp_path / "tied.toml").bearings == tied.bearings
+
+
+def test_a_check_does_not_advise_to_let_a_clamp_deform():
+    assert not any("rigid seats at" in text for text in sg.check(stub()).cautions)

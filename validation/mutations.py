@@ -51,6 +51,14 @@ class Mutation:
 
 MUTATIONS = (
     Mutation(
+        "the kinetic energy of spin counts once in the whirl of a shaft",
+        "solidgear/core/solve/spin.py",
+        "whirled",
+        "-2 * turns * coupling",
+        "-turns * coupling",
+        "tests/test_spin.py::test_rotor_of_friswell",
+    ),
+    Mutation(
         "only the mean of a held seat is held",
         "solidgear/core/scene/stations.py",
         "usual_attachment",

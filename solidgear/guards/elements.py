@@ -53,9 +53,13 @@ def narrow_seat(probe: Probe) -> Notices:
 
 def rigid_seats(probe: Probe) -> Notices:
     """Yield a notice on the change of numbers by rigid seats against averaged ones; rigid seats are
-    the stiff bound.
+    the stiff bound, and what is held is meant to be rigid.
     """
-    chosen = [repr(s.name) for s in probe.scene.stations if s.attachment == "rigid"]
+    chosen = [
+        repr(s.name)
+        for s in probe.scene.stations
+        if s.attachment == "rigid" and getattr(s, "hold", None) is None
+    ]
     if not probe.scene.bearings or not chosen:
         return
     try:

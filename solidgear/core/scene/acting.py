@@ -97,7 +97,7 @@ def _place(name: str, scene: Scene) -> float:
 
 def loads_of(scene: Scene) -> tuple[ShaftLoad, ...]:
     """Return all loads of a scene, a [load] at the main point among them."""
-    return all_loads(scene.load, scene.loads, scene.load and scene.port.name)
+    return all_loads(scene.load, scene.loads, "" if scene.load is None else scene.port.name)
 
 
 def station_loads(scene: Scene, case: LoadCase | None = None) -> dict[str, np.ndarray]:

@@ -304,15 +304,17 @@ class _Reading:
         if self.segments:
             self._judge(rows, load)
         self.problems.raise_any()
-        things = {key: tuple(row.thing for row in kind_rows) for key, kind_rows in rows.items()}
-        ports = things.pop("ports")
-        stations = [*ports, *things["bearings"], *things["masses"]]
+        things: dict[str, Any] = {
+            key: tuple(row.thing for row in kind_rows) for key, kind_rows in rows.items()
+        }
+        points = things.pop("ports")
+        stations = [*points, *things["bearings"], *things["masses"]]
         stations += [seated.seat for seated in things["loads"] if seated.seat is not None]
         scene = Scene.from_parts(
             self.segments,
             self._material(),
-            main_port=ports[0] if ports else None,
-            further_ports=ports[1:],
+            main_port=points[0] if points else None,
+            further_ports=points[1:],
             **things,
             title=file.title,
             name=name_of(self.where) if file.name is None else file.name,

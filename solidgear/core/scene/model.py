@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping
 from functools import cached_property, partial
 from typing import TYPE_CHECKING, Annotated, Any, ClassVar, TypeAlias
 
-from pydantic import BeforeValidator, PrivateAttr, model_validator
+from pydantic import BeforeValidator, PrivateAttr, model_serializer, model_validator
 
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SceneError
@@ -162,6 +162,11 @@ class Scene(Displayed, Model):
     uncertain: tuple[Uncertain, ...] = ()
     ask: Ask = Ask()
     _origin: Origin = PrivateAttr(Origin())
+
+    @model_serializer(mode="wrap")
+    def _in_words(self, dump: Any) -> dict[str, Any]:
+        words = self._words_by_field()
+        return {words.get(name, name): value for name, value in dump(self).items()}
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Scene:

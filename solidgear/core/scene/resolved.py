@@ -14,7 +14,6 @@ if TYPE_CHECKING:
 def resolved(scene: Scene) -> dict[str, Any]:
     """Return everything of a scene whose bearings have a stiffness, as plain data for JSON."""
     data = scene.model_dump(mode="json")
-    data["port"] = data.pop("main_port")
     for key in ("masses", "loads", "cases", "features", "blends", "further_ports", "uncertain"):
         if not data[key]:
             del data[key]
