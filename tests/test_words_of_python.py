@@ -47,7 +47,7 @@ FOREIGN = {"scene", "source", "mesh"}
         (lambda: sg.Train.from_dict("x"), SolidgearError, "^'x': give the tables of a train"),
         (lambda: sg.modes(3), SolidgearError, "^modes: `body` = 3: give the path"),
         (lambda: sg.modes(CATALOGUE, CATALOGUE), SolidgearError, "`supports` are those of the"),
-        (lambda: sg.modes(CATALOGUE, n=0), SolidgearError, "`n` 0: give 1 to"),
+        (lambda: sg.modes(CATALOGUE, n=0), SolidgearError, "n = 0: give 1 to"),
         (lambda: sg.modes(BEAM, tol=0.1), SolidgearError, "a body has its mesh"),
         (lambda: sg.condense(CATALOGUE, (), "gear"), SolidgearError, "`body` = a Scene"),
         (lambda: sg.build(STEPPED, "euler"), SolidgearError, "first, by sg.load"),

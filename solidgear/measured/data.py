@@ -390,7 +390,7 @@ def load_measured(source: MeasuredSource) -> Measured:
         return source
     if isinstance(source, Responses):
         return measured_from_responses(source)
-    if isinstance(source, list | tuple | np.ndarray):
+    if isinstance(source, Sequence | np.ndarray) and not isinstance(source, str):
         source = {"mode": [{"frequency": frequency} for frequency in source]}
     name = os.fspath(source) if isinstance(source, str | os.PathLike) else "measured data"
     if isinstance(source, Document):

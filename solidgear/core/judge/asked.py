@@ -110,7 +110,7 @@ def modes(
 def checked_number(n: int) -> int:
     """Return the number of modes that a scene is asked for; refuse one that no list has."""
     if not 1 <= n <= MOST_MODES:
-        raise SolidgearError(f"`n` {show(n)}: give 1 to {MOST_MODES} modes")
+        raise SolidgearError(f"n = {show(n)}: give 1 to {MOST_MODES} modes")
     return n
 
 
