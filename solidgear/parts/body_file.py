@@ -234,6 +234,10 @@ class BodyFile(Model):
     patches: tuple[Patch, ...] = ()  #: named faces of a body without an axis
     file_materials: tuple[FileMaterial, ...] = ()  #: that a mesh file gives its groups
 
+    def __hash__(self) -> int:
+        # words hold lists of a file, and say nothing that the rest does not
+        return hash((self.kind, self.sha256, self.turn, self.foot, self.groups, self.edges))
+
     @property
     def sort(self) -> str:
         """Sort among features and parts."""
