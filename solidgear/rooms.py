@@ -43,6 +43,7 @@ ADDITIONS = {
         "fine lines": "cuts.solid.cuts:fine_lines",
         "no sector": "cuts.sector.body:no_sector",
         "not together": "cuts.sector.body:not_together",
+        "mass": "cuts.features.mass:mass_beside",
     },
     # models and bodies
     "model": {

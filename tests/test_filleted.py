@@ -89,6 +89,5 @@ HOLE = CrossHole(name="h", segment="rod", y=0.05, diameter=0.005)
 def test_every_model_that_is_offered_settles_what_the_scene_has(model, features):
     """The plain part, or all of it by models that are made for what it has; else what is said is true."""
     scene = keyed(*features)
-    (shaft,) = Assembly.of(scene).settling(model).train.shafts.values()
-    why = LADDER[model].unfit(shaft.scene)
+    why = LADDER[model].unfit(Assembly.of(scene).settling(model).meshed_scene("shaft", model))
     assert bool(why) == (not LADDER[model].concerns(scene)), why

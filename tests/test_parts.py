@@ -17,11 +17,13 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.isolated import isolated
 from solidgear.core.meshing.placing import TURNS, Placing
 from solidgear.core.scene.closed_form import volume_of
-from solidgear.core.scene.outline import Outline
+from solidgear.core.scene.outline import Frustum, Outline
 from solidgear.cuts.features import Keyway
 from solidgear.guards import check, round_part
 from solidgear.parts.mesh_file import mesh_from
 from solidgear.parts.own_mesh import solid_body
+from solidgear.parts.round_part import _evened as round_radii
+from solidgear.parts.round_part import _joined as joined
 from solidgear.show.outputs import node_order
 from validation.step_parts import shaft_step, with_unit, write_step
 
@@ -524,3 +526,63 @@ def test_broken_files_end_in_a_sentence(cases, seed):
     found = isolated(run, replace(PARTS, make=make), cases, seed, seconds=200)
     assert not [one.told() for one in found if one.kind == "finding"]
     assert sum(one.kind == "refused" for one in found) > cases / 2
+
+
+FOUND = ROOT / "tests" / "found" / "parts"
+
+
+def test_a_slot_in_the_middle_leaves_the_round_part(tmp_path):
+    """More than half of the section in the middle is gone, where the round part was looked for."""
+    scene = sg.load(FOUND / "slot_deep.toml")
+    (segment,) = scene.segments
+    assert (segment.y0, segment.y1) == pytest.approx((0.0, 0.1), abs=1e-9)
+    assert segment.outer0 == segment.outer1 == pytest.approx(0.02, rel=1e-6)
+    assert not scene.body.round
+    # of the STEP file, whose slot is 4 mm wide
+    assert scene.body.uneven == (pytest.approx((0.048, 0.052), abs=1e-9),)
+    body = sg.build(scene, "solid", **COARSE)
+    # the kernel has the volume to 1e-6, the arcs of a coarse mesh to 2e-3
+    assert body.mass_matrix()[0, 0] == pytest.approx(7850 * scene.body.volume, rel=3e-3)
+    # the mesh of it, as another program writes it
+    written(body, tmp_path / "slot.msh")
+    text = (FOUND / "slot_deep.toml").read_text()
+    text = text.replace('step="slot_deep.step"', 'mesh="slot.msh"')
+    (tmp_path / "mesh.toml").write_text(text)
+    again = sg.load(tmp_path / "mesh.toml")
+    assert again.length == pytest.approx(0.1, abs=1e-9)
+    assert again.body.centre == pytest.approx(scene.body.centre, abs=2e-6)
+
+
+def test_pins_between_discs_are_no_solid_cylinder():
+    """Volume and centre of the kernel; the round part has the area of the pins between the discs."""
+    scene = sg.load(FOUND / "pins_load.toml")
+    assert scene.body.volume == pytest.approx(185.0712e-6, rel=1e-6)
+    assert scene.body.round_volume == pytest.approx(1.0, abs=2e-3)  # two degrees between rays
+    pins = scene.segments_at(0.08)[0]
+    # three of 12 mm
+    assert math.pi * pins.outer0**2 == pytest.approx(3 * math.pi * 6e-3**2, rel=5e-3)
+    assert scene.body.uneven == (pytest.approx((0.07, 0.09), abs=1e-9),)
+    # discs of 10 mm, pins of 20, ends of 60 and 50
+    y, area = np.array([30, 65, 80, 95, 125]), np.array([15**2, 40**2, 3 * 6**2, 40**2, 15**2])
+    volumes = area * np.array([60, 10, 20, 10, 50])
+    assert scene.body.centre == pytest.approx((0, 1e-3 * volumes @ y / volumes.sum(), 0), abs=1e-7)
+
+
+def test_a_seat_on_no_cylinder_is_refused(tmp_path):
+    """A port over three pins has no surface to hold."""
+    text = (FOUND / "pins_load.toml").read_text()
+    text = text.replace('position = "50 mm"', 'position = "80 mm"')
+    text = text.replace('["45 mm", "55 mm"]', '["75 mm", "85 mm"]')
+    text = text.replace("pins_between.step", str(FOUND / "pins_between.step"))
+    (tmp_path / "scene.toml").write_text(text)
+    with pytest.raises(sg.SceneError, match="no face of the part is round about its axis"):
+        sg.load(tmp_path / "scene.toml")
+
+
+def test_slices_of_one_section_are_one_segment():
+    """A splined sleeve has the same section all along, whatever the triangles of its slices say."""
+    radii = np.array([[30.0, 16.4075], [30.0, 16.4063], [30.0, 16.4081]])
+    walls = [Frustum(k, k + 1.0, o, o, i, i) for k, (o, i) in enumerate(round_radii(radii))]
+    assert len(joined(walls, 1e-6)) == 1
+    # a taper is none
+    assert not np.ptp(round_radii(np.array([[30.0, 16.0], [29.0, 16.0]]))[:, 0]) == 0

@@ -83,6 +83,22 @@ MUTATIONS = (
         "tests/test_layout.py::test_a_seat_narrower_than_a_few_depths_of_its_cells_has_a_layer",
     ),
     Mutation(
+        "weight: what is cut out of a shaft still weighs",
+        "solidgear/core/scene/own_mass.py",
+        "own_mass",
+        "outline.mass + sum((part.mass for part in further))",
+        "outline.mass",
+        "tests/test_own_body.py::test_mass_and_centre_of_cuts_are_those_of_the_kernel",
+    ),
+    Mutation(
+        "stress: sections that are not round are taken as discs",
+        "solidgear/strength/stress/nominal.py",
+        "nominal_rows",
+        "any((lo < inside < hi for lo, hi in uneven))",
+        "False",
+        "tests/test_own_body.py::test_sections_that_are_not_round_have_no_nominal_stress",
+    ),
+    Mutation(
         "bounds: the richer space has one order more only",
         "solidgear/core/bounds/richer_space.py",
         "RicherSpace.__init__",

@@ -38,12 +38,8 @@ def assumed(scene: Scene, ranges: OpenNumbers) -> Iterator[Remark]:
         yield Remark("assumed without ranges")
 
 
-def assumed_at_rest(
-    stressed: StressAtRest, notch: WorstNotch | None, cuts: tuple[str, ...] = ()
-) -> Iterator[Remark]:
-    """Yield what deflection and stress at rest assume, the former without some cuts."""
-    if cuts:
-        yield Remark("assumed plain", {"names": cuts})
+def assumed_at_rest(stressed: StressAtRest, notch: WorstNotch | None) -> Iterator[Remark]:
+    """Yield what stress at rest assumes."""
     unrated = [feature.name for shaft in stressed.shafts for feature in shaft.found.unrated]
     if unrated:
         yield Remark("assumed unrated", {"names": tuple(unrated)})

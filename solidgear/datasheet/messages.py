@@ -288,10 +288,6 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Axial force and torque are taken as steady, as their amplitudes are not given.",
         "Längskraft und Drehmoment gelten als ruhend, weil ihre Ausschläge nicht angegeben sind.",
     ),
-    "assumed plain": (
-        "Deflection and bearing loads without {names}; with it the shaft is a little softer.",
-        "Verformung und Lagerkräfte ohne {names}; damit ist die Welle etwas weicher.",
-    ),
     "assumed no torque": (
         "No torque runs along the shaft in the stress.",
         "In der Spannung läuft kein Drehmoment durch die Welle.",

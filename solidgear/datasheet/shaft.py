@@ -9,7 +9,7 @@ from typing import Any
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.study import BearingFacts
-from solidgear.core import LADDER, Scene, SolidgearError, load, without_axis
+from solidgear.core import Scene, SolidgearError, load, without_axis
 from solidgear.core.judge.at_rest import spin_moved
 from solidgear.datasheet.assumed import absent_notch, assumed, assumed_at_rest
 from solidgear.datasheet.at_rest import (
@@ -39,7 +39,6 @@ from solidgear.datasheet.spin import caution_of_spin
 from solidgear.strength.deflection import at_rest
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
 from solidgear.trains.load.bearing import bearing
@@ -104,9 +103,7 @@ def _under_load(
     """Return the sheet with what the load does to the shaft at rest."""
     progress("deflection")
     scene = assembly.train.shafts[ALONE].scene
-    cuts = () if LADDER[JUDGE].can_model(scene) else tuple(f.name for f in scene.features)
-    # what is cut out moves loads of bearings by next to nothing
-    deflected = at_rest.deflect(assembly.settling(JUDGE), point)
+    deflected = at_rest.deflect(assembly, point)
     progress("stress")
     stressed = stress_at_rest(assembly, point, asked=settings)
     notch = worst_notch(stressed)
@@ -128,7 +125,7 @@ def _under_load(
         absent=sheet.absent | absent_notch(stressed, notch),
         bearings=bearing_facts(deflected, {ALONE: assembly.scenes[ALONE]}, lives),
         motions=motions(deflected, [port.name for port in scene.ports]),
-        assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch, cuts)),
+        assumed=(*sheet.assumed, *assumed_at_rest(stressed, notch)),
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),
         elsewhere=len({*deflected.cautions, *deflected.judge.notes, *stressed.cautions}),
     )

@@ -25,6 +25,7 @@ from solidgear.core.judge.record import GuardRecord
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.plain import plain
 from solidgear.core.scene.closed_form import mass_properties, whole_mass
+from solidgear.core.scene.own_mass import beside, mass_with_masses, own_mass
 from solidgear.core.scene.shaft import feature_labels, resolved
 from solidgear.guards.details import details
 from solidgear.guards.notice import LEVELS, Notice, Notices, beams, everything
@@ -299,7 +300,7 @@ def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     yield Notice(
         "fact",
         (),
-        f"not of revolution{as_recognised}: {names}; numbers of the shaft are for its plain part",
+        f"not of revolution{as_recognised}: {names}; beams and the harmonic solid are judged on its plain part",
     )
     fit = LADDER.holding(scene)
     use = f"use {' or '.join(fit)}" if fit else "no model solves all of them"
@@ -366,13 +367,19 @@ def _held_at(scene: Scene) -> str:
 
 def _of_the_shaft(scene: Scene) -> Iterator[Notice]:
     """Yield notices on length, mass and inertia, with all rigid masses."""
-    shaft, exact = mass_properties(scene.outline), whole_mass(scene)
+    shaft, inertia = own_mass(scene), whole_mass(scene)
+    mass, centre = mass_with_masses(scene)
+    source = "closed form"
+    if beside(scene):
+        source = "closed form, inertia of the round part"
+        if scene.body is not None:
+            source = "mass and centre of the file, inertia of the round part"
     yield Notice(
         "fact",
         (),
-        f"{scene.name}: length {1e3 * scene.length:.6g} mm, mass {exact.mass:.4g} kg, centre at y = "
-        f"{1e3 * exact.centre:.4g} mm, polar inertia {exact.iyy:.4g}, transverse {exact.ixx:.4g} "
-        f"kg m^2 (closed form{' of the round part' if scene.body is not None else ''})",
+        f"{scene.name}: length {1e3 * scene.length:.6g} mm, mass {mass:.4g} kg, centre at y = "
+        f"{1e3 * centre:.4g} mm, polar inertia {inertia.iyy:.4g}, transverse {inertia.ixx:.4g} "
+        f"kg m^2 ({source})",
     )
     if scene.masses:
         masses = listed(

@@ -10,7 +10,6 @@ from typing import TYPE_CHECKING
 from solidgear.core import (
     QUANTITIES,
     BarredMode,
-    Body,
     Mode,
     ModeSet,
     Quantity,
@@ -23,7 +22,7 @@ from solidgear.core import (
 from solidgear.core.judge.change import Side
 from solidgear.core.judge.quantities import Values
 from solidgear.core.judge.solving import answer_of_body
-from solidgear.core.scene.closed_form import mass_properties
+from solidgear.core.scene.own_mass import own_mass
 from solidgear.guards.check import cautions
 
 if TYPE_CHECKING:
@@ -44,7 +43,7 @@ class OneShaft(Side):
     modes: ModeSet
     bars: dict[str, float]  #: relative, of quantities and modes
     mass: float  #: of the shaft without masses on it, kg
-    mass_bar: float | None  #: relative; rounding for a closed form, else None
+    mass_bar: float | None  #: kg; rounding for a closed form, else None
 
     @property
     def title(self) -> str:
@@ -100,7 +99,7 @@ def one_shaft(
         mode = solution.modes.named(quantity)
         if mode is not None:
             bars.setdefault(str(mode.name), settled.bars[quantity])
-    mass, mass_bar = mass_of(scene, body)
+    mass, mass_bar = mass_of(scene)
     return OneShaft(
         letter=letter,
         name=name,
@@ -115,15 +114,9 @@ def one_shaft(
     )
 
 
-def mass_of(scene: Scene, body: Body) -> tuple[float, float | None]:
-    """Compute the mass of a shaft without masses on it, kg, and its relative error bar: rounding
-    where the mass has a closed form, None where it is that of a mesh.
+def mass_of(scene: Scene) -> tuple[float, float | None]:
+    """Return the mass of a shaft without masses on it, kg, and its error bar, kg: rounding where it has
+    a closed form, None where it is that of a file.
     """
-    if body.mesh.get("round", True):
-        return round_mass(scene), ROUNDING
-    return float(body.mass_matrix()[0, 0]), None
-
-
-def round_mass(scene: Scene) -> float:
-    """Compute the mass of the round part of a shaft without masses on it, kg."""
-    return mass_properties(scene.outline).mass
+    mass = own_mass(scene).mass
+    return mass, ROUNDING * mass if scene.body is None or scene.body.round else None

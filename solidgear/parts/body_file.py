@@ -165,6 +165,7 @@ class PartGroup(Model):
     name: str  #: of the group of elements or the solid in the file; empty for the remainder
     material: Material | None = None  #: None for that of the scene
     volume: float  #: m^3
+    centre: Triple = Field((0.0, 0.0, 0.0), exclude=True, repr=False)  #: m, in the scene
     members: tuple[str, ...] = ()  #: of the remainder: groups of the file with elements in it
 
     @property
@@ -206,6 +207,7 @@ class BodyFile(Model):
     turn: tuple[Triple, Triple, Triple]
     foot: Triple
     volume: float  #: m^3
+    centre: Triple = Field((0.0, 0.0, 0.0), exclude=True, repr=False)  #: of the volume, m
     #: share of the surface, without faces across the axis, that is of revolution
     round_share: float
     round_volume: float  #: of the segments over that of the part
@@ -214,6 +216,8 @@ class BodyFile(Model):
     facets: float = 0.0
     beside_arcs: float = 0.0  #: largest distance of segments from the arcs that they replace, m
     tori: tuple[Torus, ...] = Field((), exclude=True, repr=False)
+    #: stretches along y, m, in which a part of the surface is not round
+    uneven: tuple[tuple[float, float], ...] = Field((), exclude=True, repr=False)
     element: str = ""  #: of a mesh file
     #: vertices, edges, faces and cells of a mesh file
     counts: tuple[int, int, int, int] | None = None
@@ -229,6 +233,10 @@ class BodyFile(Model):
     coarser: tuple[CoarseMesh, ...] = ()
     patches: tuple[Patch, ...] = ()  #: named faces of a body without an axis
     file_materials: tuple[FileMaterial, ...] = ()  #: that a mesh file gives its groups
+
+    def __hash__(self) -> int:
+        # words hold lists of a file, and say nothing that the rest does not
+        return hash((self.kind, self.sha256, self.turn, self.foot, self.groups, self.edges))
 
     @property
     def sort(self) -> str:
@@ -298,6 +306,14 @@ class BodyFile(Model):
         if not self.groups:
             return usual.density * self.volume
         return sum(m.density * g.volume for m, g in zip(self.materials(usual), self.groups))
+
+    def centre_of_mass(self, usual: Material) -> Triple:
+        """Return the centre of mass of the part, m, in a scene of a material."""
+        if not self.groups:
+            return self.centre
+        masses = [m.density * g.volume for m, g in zip(self.materials(usual), self.groups)]
+        x, y, z = np.average([g.centre for g in self.groups], axis=0, weights=masses)
+        return float(x), float(y), float(z)
 
     def with_material(self, **changes: Any) -> BodyFile:
         """Return the part with constants (`E`, `nu`, `density`) replaced in the materials of groups."""

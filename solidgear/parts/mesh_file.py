@@ -15,6 +15,7 @@ from skfem import Mesh, MeshHex1, MeshHex2, MeshTet1
 
 from solidgear.core import listed, nearest, show
 from solidgear.core.meshing.curving import ten_nodes, with_middles, with_nodes
+from solidgear.core.meshing.geometry import moments_of_groups
 from solidgear.core.meshing.placing import Placing
 from solidgear.core.meshing.quality import MeshError, check_mesh, element_volumes, outward
 from solidgear.core.scene.file_materials import FileMaterial
@@ -68,9 +69,14 @@ class FileMesh:
         triangles = np.hstack([around[[0, 1, 2]], around[[0, 2, 3]]])
         return self.mesh.p, triangles, np.hstack([sides, sides])
 
-    def volumes(self, count: int) -> np.ndarray:
-        """Return the volume of each of `count` groups, m^3."""
-        return np.bincount(self.owner, weights=element_volumes(self.mesh), minlength=count)
+    def volumes(self, count: int) -> tuple[np.ndarray, np.ndarray]:
+        """Return the volume (count,) of each of `count` groups, m^3, and its first moment (count, 3),
+        m^4.
+        """
+        places = self.mesh.doflocs[:, self.mesh.dofs.element_dofs]
+        whole = moments_of_groups(self.mesh.elem(), places, self.owner, np.zeros(count))
+        volumes = np.bincount(self.owner, weights=element_volumes(self.mesh), minlength=count)
+        return volumes, whole[:, 0, 1:]
 
 
 def _around(p, quads) -> np.ndarray:

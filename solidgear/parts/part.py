@@ -100,6 +100,9 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
     lower = np.array(place.foot) + np.array(place.turn).T @ (0.0, start, 0.0)
     x, y, z = (float(v) for v in lower)
     points = points - [[0.0], [start], [0.0]]
+    down = np.array([0.0, start, 0.0])
+    groups = tuple(g.with_changes(centre=tuple(g.centre - down)) for g in part.groups)
+    _refuse_gaps(body.walls, start, float(np.ptp(points[1])))
     shares, first_groups = _shares(part, body.walls)
     walls = tuple(
         Frustum(_rounded(w.y0 - start), _rounded(w.y1 - start), *map(_rounded, w[2:]))
@@ -120,13 +123,15 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         turn=place.turn,
         foot=(x, y, z),
         volume=part.volume,
+        centre=tuple(part.centre - down),
         round_share=body.share,
         round_volume=volume_of(Outline(walls)) / part.volume,
         # the volume of a STEP file is that of its surfaces, and no triangle comes into it
         facets=0.0 if table.step is not None else body.facets / part.volume,
         beside_arcs=body.arc_deviation,
         tori=tuple(t._replace(y0=t.y0 - start, y1=t.y1 - start, y=t.y - start) for t in body.tori),
-        groups=part.groups,
+        uneven=tuple((lo - start, hi - start) for lo, hi in body.uneven),
+        groups=groups,
         told=() if table.materials else part.material_groups,
         mixed=tuple(f"s{k}" for k, share in enumerate(shares, 1) if share.mixed),
         remarks=(*doubt, *part.remarks),
@@ -147,6 +152,20 @@ def recognise(table: BodyTable, folder: Path) -> Recognised:
         partial(seat_share, points, triangles),
         tuple(tuple((first_groups[k], portion) for k, portion in share.groups) for share in shares),
     )
+
+
+def _refuse_gaps(walls: Sequence[Frustum], start: float, length: float) -> None:
+    """Refuse a part of which no section is seen from the axis somewhere along its length, m."""
+    ends = [start, *(end for wall in walls for end in (wall.y0, wall.y1)), start + length]
+    for before, after in zip(ends[::2], ends[1::2]):
+        if after - before > SAME_PLACE * length:
+            lo, hi = (1e3 * (y - start) for y in (before, after))
+            raise SceneError(
+                f"from {lo:.6g} to {hi:.6g} mm along it hardly anything of the part surrounds this "
+                "axis: no shaft goes through there; write segments, or a mesh file with axis = "
+                '"none"',
+                path=("body", "axis"),
+            )
 
 
 def _rod(points, volume: float) -> RoundPart:
@@ -179,6 +198,7 @@ def _block(edges: list[float]) -> Recognised:
         turn=TURNS["y"],
         foot=(0.0, 0.0, 0.0),
         volume=x * y * z,
+        centre=(0.0, y / 2, 0.0),
         round_share=0.0,
         round_volume=volume_of(Outline((wall,))) / (x * y * z),
         edges=(x, y, z),
@@ -265,7 +285,13 @@ def _centred(table: BodyTable, place: Placing, part: PartContent) -> tuple[Placi
     if not SAME_AXIS * largest < distance <= NEAR_AXIS * largest:
         return place, part
     turn = np.array(turn_of(tuple(along)))
-    moved = part._replace(points=turn @ (part.points - foot[:, None]))
+    moved = part._replace(
+        points=turn @ (part.points - foot[:, None]),
+        centre=turn @ (part.centre - foot),
+        groups=tuple(
+            g.with_changes(centre=tuple(turn @ (np.array(g.centre) - foot))) for g in part.groups
+        ),
+    )
     if not round_part(*skin(moved)).share > round_part(points, triangles).share:
         return place, part
     x, y, z = (float(v) for v in place.to_file(foot[:, None])[:, 0])

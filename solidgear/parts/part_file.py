@@ -48,6 +48,7 @@ class PartContent(NamedTuple):
     triangles: np.ndarray  #: (3, t) of both
     sides: np.ndarray  #: (2, t) group on each side, -1 outside
     volume: float  #: m^3
+    centre: np.ndarray  #: (3,) of the volume, m
     groups: tuple[PartGroup, ...]
     material_groups: tuple[str, ...] = ()  #: groups that stand for materials, where several do
     remarks: tuple[str, ...] = ()  #: oddities of the file
@@ -69,8 +70,9 @@ def read(table: BodyTable, path: Path, place: Placing, content: bytes) -> PartCo
     try:
         if table.step is not None:
             part = isolated(survey, str(path), place, names, seconds=LOOK_SECONDS)
-            groups = _groups(table, part.volumes, part.unnamed)
-            return PartContent(part.points, part.triangles, part.sides, part.volume, groups)
+            groups = _groups(table, part.volumes, part.moments, part.unnamed)
+            centre = part.moments.sum(axis=0) / part.volume
+            return PartContent(part.points, part.triangles, part.sides, part.volume, centre, groups)
         sha = hashlib.sha256(content).hexdigest()
         mesh_in_file = file_mesh(str(path), sha, place, names)
     except (IsolatedError, MemoryError) as error:
@@ -80,12 +82,14 @@ def read(table: BodyTable, path: Path, place: Placing, content: bytes) -> PartCo
         ) from None
     mesh = mesh_in_file.mesh
     points, triangles, sides = mesh_in_file.faces()
+    volumes, moments = mesh_in_file.volumes(len(names) + 1)
     return PartContent(
         points,
         triangles,
         sides,
         volume=mesh_in_file.volume,
-        groups=_groups(table, mesh_in_file.volumes(len(names) + 1), mesh_in_file.unnamed_groups),
+        centre=moments.sum(axis=0) / volumes.sum(),
+        groups=_groups(table, volumes, moments, mesh_in_file.unnamed_groups),
         material_groups=mesh_in_file.material_groups,
         remarks=mesh_in_file.remarks,
         mesh_fields={
@@ -109,17 +113,28 @@ def _patches(file: FileMesh) -> Iterator[Patch]:
         yield Patch(name=name, point=(x, y, z), extent=extent)
 
 
-def _groups(table: BodyTable, volumes, unnamed: tuple[str, ...]) -> tuple[PartGroup, ...]:
+def _groups(
+    table: BodyTable, volumes: np.ndarray, moments: np.ndarray, unnamed: tuple[str, ...]
+) -> tuple[PartGroup, ...]:
     """Return the groups with materials of their own, and the rest where there is one."""
     if not table.materials:
         return ()
     groups = [
-        PartGroup(name=name, material=material, volume=float(volume))
-        for (name, material), volume in zip(table.materials.items(), volumes)
+        PartGroup(
+            name=name, material=material, volume=float(volume), centre=_centre(moment, volume)
+        )
+        for (name, material), volume, moment in zip(table.materials.items(), volumes, moments)
     ]
     if len(volumes) > len(groups) and volumes[-1] > 0:
-        groups.append(PartGroup(name="", volume=float(volumes[-1]), members=unnamed))
+        centre = _centre(moments[-1], volumes[-1])
+        groups.append(PartGroup(name="", volume=float(volumes[-1]), centre=centre, members=unnamed))
     return tuple(groups)
+
+
+def _centre(moment: np.ndarray, volume: float) -> tuple[float, float, float]:
+    """Return the centre of a volume, m, from its first moment (3,), m^4."""
+    x, y, z = (float(v) / float(volume) if volume else 0.0 for v in moment)
+    return x, y, z
 
 
 def skin(part: PartContent) -> tuple[np.ndarray, np.ndarray]:

@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 #: least share of the cylinder of a seat, and the share below which a remark gives it: chords of
 #: eight to a turn lack 2.6 %
 LEAST_SEAT, WHOLE_SEAT = 0.5, 0.97
+#: share of the cylinder of a seat that faces have by chance, where the section is not round at all
+NO_SEAT = 0.01
 #: relative difference of the mass of a part from mass_check
 MASS_CHECK = 1e-2
 #: relative difference of diameters that are one
@@ -141,7 +143,14 @@ def with_seats(part: Recognised, stations: Iterable, segments: Sequence[Segment]
         radii = {r for g in carriers for r in (g.outer0, g.outer1)}
         if s.attachment == "section" or len(radii) != 1 or not s.hi > s.lo:
             continue
-        share = part.seat_share(radii.pop(), s.lo, s.hi)
+        radius = radii.pop()
+        share = part.seat_share(radius, s.lo, s.hi)
+        if share < NO_SEAT:
+            raise SceneError(
+                f"the seat of {s.name!r}, from {1e3 * s.lo:.6g} to {1e3 * s.hi:.6g} mm, lies where no "
+                f"face of the part is round about its axis (mean diameter {2e3 * radius:.6g} mm): "
+                "move it to a cylinder of the part"
+            )
         if share < WHOLE_SEAT:
             remarks.append(
                 f"the seat of {s.name!r} has {100 * share:.3g} % of its cylinder's area 2 pi r b; "

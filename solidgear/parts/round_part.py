@@ -31,6 +31,8 @@ MOST_SURFACES, LEAST_SHARE = 300, 2e-5
 SAME_PLACE = 2e-6
 #: rays around the axis, and slices of a stretch that is not round
 RAYS, SLICES = 180, 6
+#: shares of a stretch at which its section is looked at, one after the other until it is round
+PLACES = (0.4837, 0.1371, 0.8629)
 #: a chord of eight to a turn lies this share of the radius inside its circle
 CHORD = 0.08
 #: rad; facets of a mesh of something round: about twelve or more to a turn, and none that many times
@@ -72,6 +74,8 @@ class RoundPart:
     facets: float = 0.0
     arc_deviation: float = 0.0  #: largest distance of walls from the arc of a torus, m
     tori: tuple[Torus, ...] = ()  #: fillets and the like that walls follow as cones
+    #: stretches along y, m, in which a part of the surface is not round
+    uneven: tuple[tuple[float, float], ...] = ()
 
 
 def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
@@ -135,7 +139,16 @@ def round_part(points: np.ndarray, triangles: np.ndarray) -> RoundPart:
         facets = 0.0
     elif not _fine_around(points, triangles[:, is_round], ON_LINE * largest):
         facets *= CURVED
-    return RoundPart(tuple(walls), tuple(surfaces), share, facets, arc_deviation, tuple(tori))
+    uneven = tuple(_stretches(y[triangles[:, ~is_round & ~flat]], SAME_PLACE * length))
+    return RoundPart(
+        tuple(walls), tuple(surfaces), share, facets, arc_deviation, tuple(tori), uneven
+    )
+
+
+def _stretches(y: np.ndarray, near: float) -> Iterator[tuple[float, float]]:
+    """Yield the stretches that triangles with corners y (3, t) cover together, m."""
+    for members in _runs(y, np.arange(y.shape[1]), near) if y.size else ():
+        yield float(y[:, members].min()), float(y[:, members].max())
 
 
 def _volume_beside(points, triangles, surfaces: list[Lathe]) -> float:
@@ -243,16 +256,8 @@ def _walls(points, triangles, surfaces, first, last) -> tuple[list[Frustum], boo
     by_rays = False
     for y0, y1 in zip(cuts, cuts[1:]):
         crossing = [s for s in surfaces if s.y0 < y0 + near and s.y1 > y1 - near]
-        middle = _inside(y0, y1)
-        section = _section_radii(points, triangles, middle)
-        if section is None:
-            continue
-        _, (outer, inner) = section
-        # a round surface that most rays meet, else their mean radius
-        out = max(_at_radius(crossing, middle, outer), key=lambda s: s.radius(middle), default=None)
-        inward = [s for s in _at_radius(crossing, middle, inner) if s is not out]
-        bore = min(inward, key=lambda s: s.radius(middle), default=None)
-        if out is not None and (bore is not None or inner == 0.0):
+        out, bore, outer_alone = _round_at(points, triangles, crossing, y0, y1)
+        if out is not None and (bore is not None or outer_alone):
             ends = [s.radius(e) if s else 0.0 for s in (out, bore) for e in (y0, y1)]
             walls.append(Frustum(float(y0), float(y1), *map(float, ends)))
         else:
@@ -261,9 +266,32 @@ def _walls(points, triangles, surfaces, first, last) -> tuple[list[Frustum], boo
     return _joined(walls, near), by_rays
 
 
-def _inside(y0, y1) -> float:
+def _round_at(
+    points, triangles, crossing: list[Lathe], y0, y1
+) -> tuple[Lathe | None, Lathe | None, bool]:
+    """Return the round surfaces outside and in the bore of a stretch, that most rays meet at the first
+    place where they do, and whether there is no bore: a slot may take away the middle of it.
+    """
+    usual: tuple[Lathe | None, Lathe | None, bool] | None = None
+    for share in PLACES:
+        middle = _inside(y0, y1, share)
+        section = _section_radii(points, triangles, middle)
+        if section is None:
+            continue
+        outer, inner = section.middle
+        out = max(_at_radius(crossing, middle, outer), key=lambda s: s.radius(middle), default=None)
+        inward = [s for s in _at_radius(crossing, middle, inner) if s is not out]
+        bore = min(inward, key=lambda s: s.radius(middle), default=None)
+        at_place = out, bore, inner == 0.0
+        if out is not None or not crossing:
+            return at_place
+        usual = usual or at_place
+    return usual or (None, None, False)
+
+
+def _inside(y0, y1, share: float = PLACES[0]) -> float:
     """Return a place between two others on which nodes of a mesh hardly lie."""
-    return y0 + 0.4837 * (y1 - y0)
+    return y0 + share * (y1 - y0)
 
 
 def _at_radius(surfaces, middle, radius) -> list[Lathe]:
@@ -279,19 +307,30 @@ def _at_radius(surfaces, middle, radius) -> list[Lathe]:
 def _sliced(points, triangles, y0, y1, out, bore) -> list[Frustum]:
     """Return frusta of mean radii where the surface is not round."""
     edges = np.linspace(y0, y1, SLICES + 1)
-    walls = []
+    places, means = [], []
     for a, b in zip(edges, edges[1:]):
         section = _section_radii(points, triangles, _inside(a, b))
-        if section is None:
-            continue
-        (outer, inner), _ = section
+        if section is not None:
+            places.append((float(a), float(b)))
+            means.append(section.mean)
+    walls = []
+    for (a, b), (outer, inner) in zip(places, _evened(np.array(means))):
         ends = [
             s.radius(e) if s is not None else mean
             for s, mean in ((out, outer), (bore, inner))
             for e in (a, b)
         ]
-        walls.append(Frustum(float(a), float(b), *map(float, ends)))
+        walls.append(Frustum(a, b, *map(float, ends)))
     return walls
+
+
+def _evened(radii: np.ndarray) -> np.ndarray:
+    """Return radii (slices, 2) of one section all along as one, where they differ by less than a ray
+    more or less.
+    """
+    if len(radii) and (np.ptp(radii, axis=0) <= radii.max(axis=0) / RAYS).all():
+        return np.broadcast_to(np.sqrt((radii**2).mean(axis=0)), radii.shape)
+    return radii
 
 
 def _joined(walls, near) -> list[Frustum]:
@@ -322,16 +361,21 @@ def _in_line(a: Frustum, b: Frustum) -> bool:
     return True
 
 
-def _section_radii(points, triangles, y) -> tuple[tuple[float, float], tuple[float, float]] | None:
-    """Return outer radius and bore of a section, m: those of circles of the same area, and those
-    that half of the rays reach; None where hardly a ray meets a surface.
-    """
+class Section(NamedTuple):
+    """Outer radius and bore of a section, m."""
+
+    mean: tuple[float, float]  #: of circles of the same area
+    middle: tuple[float, float]  #: that half of the rays reach; zero where these miss the part
+
+
+def _section_radii(points, triangles, y) -> Section | None:
+    """Return the radii of a section by rays from the axis; None where no ray meets a surface."""
     cut = _cut_at(points, triangles, y)
     if cut is None:
         return None
     (x0, z0), (x1, z1) = cut
-    outer, inner = [], []
-    for angle in 2 * np.pi * (np.arange(RAYS) + 0.37) / RAYS:
+    outer, inner = np.zeros((2, RAYS))
+    for k, angle in enumerate(2 * np.pi * (np.arange(RAYS) + 0.37) / RAYS):
         c, s = np.cos(angle), np.sin(angle)
         side0, side1 = c * z0 - s * x0, c * z1 - s * x1
         crossing = (side0 < 0) != (side1 < 0)
@@ -339,15 +383,19 @@ def _section_radii(points, triangles, y) -> tuple[tuple[float, float], tuple[flo
         along = (c * x0 + s * z0)[crossing] * (1 - t) + (c * x1 + s * z1)[crossing] * t
         met = np.sort(along[along > 0])
         if len(met):
-            outer.append(met[-1])
+            outer[k] = met[-1]
             # an even number of surfaces leaves the axis outside
-            inner.append(met[0] if len(met) % 2 == 0 else 0.0)
-    if len(outer) < RAYS / 2:
+            inner[k] = met[0] if len(met) % 2 == 0 else 0.0
+    reached = outer > 0
+    if not reached.any():
         return None
-    middle = float(np.median(outer)), float(np.median(inner))
-    mean = float(np.sqrt(np.square(outer).sum() / RAYS))
-    hollow = float(np.sqrt(np.square(inner).sum() / RAYS)) if middle[1] > 0 else 0.0
-    return (mean, hollow), middle
+    if 2 * reached.sum() < RAYS:
+        # pins and claws: a disc of their area
+        return Section((float(np.sqrt((outer**2 - inner**2).mean())), 0.0), (0.0, 0.0))
+    middle = float(np.median(outer[reached])), float(np.median(inner[reached]))
+    mean = float(np.sqrt((outer**2).mean()))
+    hollow = float(np.sqrt((inner**2).mean())) if middle[1] > 0 else 0.0
+    return Section((mean, hollow), middle)
 
 
 def _cut_at(points, triangles, y) -> tuple[np.ndarray, np.ndarray] | None:

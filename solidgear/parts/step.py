@@ -54,6 +54,7 @@ class Survey:
     triangles: np.ndarray  #: (3, t)
     sides: np.ndarray  #: (2, t) owner of the solid on each side, -1 outside
     volumes: np.ndarray  #: (n + 1,) of the named solids and of all others, m^3
+    moments: np.ndarray  #: (n + 1, 3) first moments of these, m^4
     unnamed: tuple[str, ...]  #: the others
     faces: int
 
@@ -91,8 +92,13 @@ def survey(path: str, place: Placing, names: tuple[str, ...] = ()) -> Survey:
         points, triangles, sides = _triangles(gmsh, faces, owner, pieces)
         _refuse_open(points, triangles[:, (sides < 0).any(axis=0)], drawn)
         owners = np.repeat(owner, [len(tags) for tags in pieces])
-        volumes = np.bincount(owners, volumes_of(gmsh, sum(pieces, [])), len(names) + 1)
-    return Survey(points, triangles, sides, volumes, unnamed, len(faces))
+        tags = sum(pieces, [])
+        centres = np.array([gmsh.model.occ.getCenterOfMass(3, tag) for tag in tags])
+        of_pieces = volumes_of(gmsh, tags)
+        volumes = np.bincount(owners, of_pieces, len(names) + 1)
+        moments = np.zeros((len(volumes), 3))
+        np.add.at(moments, owners, of_pieces[:, None] * centres)
+    return Survey(points, triangles, sides, volumes, moments, unnamed, len(faces))
 
 
 def _refuse_open(points: np.ndarray, triangles: np.ndarray, drawn: float) -> None:

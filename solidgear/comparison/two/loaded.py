@@ -12,12 +12,11 @@ from solidgear.strength.acting import FEW
 from solidgear.strength.deflection.at_rest import Deflection, Measured, deflections
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.load.static_errors import FORBIDDEN
 
 #: motions across the shaft by their words: components, and SI unit
 ACROSS = {"deflection": (("x", "z"), "m moved"), "slope": (("thx", "thz"), "rad moved")}
-BY = "by the harmonic solid of the plain shafts"
+BY = "by the cheapest solids that model all of the shafts"
 
 
 def loaded_changes(scenes: Sequence[Scene]) -> tuple[tuple[NumberChange, ...], str]:
@@ -34,8 +33,8 @@ def loaded_changes(scenes: Sequence[Scene]) -> tuple[tuple[NumberChange, ...], s
 
 
 def _deflected(scene: Scene) -> Deflection:
-    assembly = Assembly.of(scene.plain, kept=FEW)
-    return deflections(assembly, [assembly.train.point or AT_REST], JUDGE)[0]
+    assembly = Assembly.of(scene, kept=FEW)
+    return deflections(assembly, [assembly.train.point or AT_REST], *assembly.solids)[0]
 
 
 def _changes(a: Deflection, b: Deflection) -> Iterator[NumberChange]:

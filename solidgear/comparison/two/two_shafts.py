@@ -249,7 +249,7 @@ def _changes(
     """Yield the mass, entries of C and K, and the first frequencies, each beside that of the
     partner of the mode.
     """
-    bar_a, bar_b = (None if s.mass_bar is None else s.mass_bar * s.mass for s in (a, b))
+    bar_a, bar_b = a.mass_bar, b.mass_bar
     yield NumberChange("mass", "kg", Change(a.mass, b.mass, bar_a, bar_b), a.mass)
     for name in in_order(a.values):
         if name.is_frequency or name not in b.values or _twin(a, name) and _twin(b, name):

@@ -7,6 +7,7 @@ from functools import partial
 from typing import TYPE_CHECKING
 
 from solidgear.core.errors import SolidgearError, nearest, show
+from solidgear.core.ladder.model import SOLID
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.ladder.remedies import refusal
 from solidgear.core.machine.memory import NoRoom, begin
@@ -41,6 +42,22 @@ def way_out(scene: Shaft) -> str:
         f'{NO_MODEL}; write model = "pitch_cone" for {feature_labels(cut)}, which replaces teeth by '
         f"their pitch surface, and use {' or '.join(fit)}"
     )
+
+
+def solid_of(scene: Shaft) -> str:
+    """Return the cheapest solid that models all of a scene, cuts and parts from files included; refused
+    where none does.
+
+    Examples
+    --------
+    >>> import solidgear as sg
+    >>> [solid_of(sg.load(f"geometry/{name}.toml")) for name in ("shaft_stepped", "pinion_keyed")]
+    ['harmonic', 'corrected']
+    """
+    for name in LADDER.of(SOLID):
+        if LADDER[name].can_model(scene):
+            return name
+    raise SolidgearError(way_out(scene))
 
 
 @pinned

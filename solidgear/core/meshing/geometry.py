@@ -100,18 +100,28 @@ def moments_of_cells(
     (3, nb, ne) places of the nodes of elements, and (ne,) segments that they lie in.
     """
     parts = parts_of(outline)
+    owner = parts.of_segments[segment]
+    return moments_of_groups(element, places, owner, parts.middles)
+
+
+def moments_of_groups(
+    element: Element, places: np.ndarray, owner: np.ndarray, beside: np.ndarray
+) -> np.ndarray:
+    """Integrate the products (k, 4, 4) of 1, x, y and z over groups of cells, y from a place (k,) of
+    each, m; (3, nb, ne) places of the nodes of elements, (ne,) groups that they belong to.
+    """
     points, weights = get_quadrature(element.refdom, _degree(element))
     value, slope = _tabulated(element, points)
-    out = np.zeros((len(parts.middles), 4, 4))
-    for first in range(0, len(segment), BATCH):
-        owner = parts.of_segments[segment[first : first + BATCH]]
-        nodes = places[:, :, first : first + BATCH]
+    out = np.zeros((len(beside), 4, 4))
+    for first in range(0, len(owner), BATCH):
+        batch = slice(first, first + BATCH)
+        nodes = places[:, :, batch]
         det = np.linalg.det(np.einsum("jbe,ibq->eqji", nodes, slope, optimize=True))
         place = np.ones((4, *det.shape))
         place[1:] = np.einsum("jbe,bq->jeq", nodes, value, optimize=True)
-        place[2] -= parts.middles[owner][:, None]
+        place[2] -= beside[owner[batch]][:, None]
         products = np.einsum("ieq,jeq,eq->eij", place, place, det * weights, optimize=True)
-        np.add.at(out, owner, products)
+        np.add.at(out, owner[batch], products)
     return out
 
 

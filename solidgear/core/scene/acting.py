@@ -15,10 +15,10 @@ import numpy as np
 
 from solidgear.core.errors import SceneError, listed, show
 from solidgear.core.frames import shift
-from solidgear.core.scene.closed_form import mass_properties
 from solidgear.core.scene.gravity import acceleration
 from solidgear.core.scene.load_case import LoadCase
 from solidgear.core.scene.load_rules import ALL, all_loads, named_case
+from solidgear.core.scene.own_mass import own_mass
 from solidgear.core.scene.shaft_load import ShaftLoad
 from solidgear.core.scene.units import TYPED
 
@@ -142,17 +142,11 @@ def _refuse_torques(loads: Sequence[ActingLoad], case: str) -> None:
 
 
 def own_weight(scene: Scene) -> tuple[np.ndarray, float]:
-    """Return the weight (6,) of a shaft without the masses on it, N, and the place of its centre, m;
-    refused for a part from a file that is not of revolution.
+    """Return the weight (6,) of a shaft without the masses on it, N, and the place of its centre, m: on
+    the axis, since what is beside it turns with the shaft.
     """
-    if scene.body is not None and not scene.body.round:
-        raise SceneError(
-            "weight is that of shafts of revolution, and the part from a file is none: give loads with "
-            "a mass",
-            path=("weight",),
-        )
-    mass = mass_properties(scene.outline)
-    return np.r_[mass.mass * acceleration(scene.weight), np.zeros(3)], mass.centre
+    shaft = own_mass(scene)
+    return np.r_[shaft.mass * acceleration(scene.weight), np.zeros(3)], shaft.centre[1]
 
 
 def weights_of_masses(scene: Scene) -> dict[str, np.ndarray]:
@@ -162,14 +156,3 @@ def weights_of_masses(scene: Scene) -> dict[str, np.ndarray]:
         six = shift(point.offset).T @ np.r_[point.mass * g, np.zeros(3)]
         out[point.station] = out.get(point.station, np.zeros(6)) + six
     return out
-
-
-def weight_about(scene: Scene, place: float) -> np.ndarray:
-    """Return the weight (6,) of a shaft with the masses on it about a place on the axis, m."""
-    six, centre = own_weight(scene)
-    places = {station.name: station.y for station in scene.stations}
-    loads = [ActingLoad("", "", centre, six)]
-    loads += [
-        ActingLoad("", name, places[name], load) for name, load in weights_of_masses(scene).items()
-    ]
-    return sum((load.about(place) for load in loads), np.zeros(6))

@@ -110,18 +110,29 @@ class CrossHole(Cut):
         return occ.addCylinder(self.offset, self.y - along, -height, 0, 2 * along, 2 * height, half)
 
     def volume(self, outer: float, inner: float) -> float:
+        return self._moment(outer, inner, 0)
+
+    def centre(self, outer: float, inner: float) -> tuple[float, float]:
+        if not self.offset:
+            return 0.0, 0.0
+        return self._moment(outer, inner, 1) / self._moment(outer, inner, 0), 0.0
+
+    def _moment(self, outer: float, inner: float, power: int) -> float:
+        """Return the integral of a power of the distance from the middle plane over the hole."""
         from scipy.integrate import quad
 
         half = self.diameter / 2
 
         def section(side: float) -> float:
-            x2 = (self.offset + side) ** 2
-            wall = math.sqrt(outer**2 - x2) - math.sqrt(max(inner**2 - x2, 0.0))
-            return 4 * math.sqrt(half**2 - side**2) * wall
+            x = self.offset + side
+            wall = math.sqrt(outer**2 - x * x) - math.sqrt(max(inner**2 - x * x, 0.0))
+            return 4 * x**power * math.sqrt(half**2 - side**2) * wall
 
         bore_sides = (side - self.offset for side in (-inner, inner))
         kinks = [side for side in bore_sides if abs(side) < half] or None
-        area = quad(section, -half, half, points=kinks, epsabs=0, epsrel=1e-10)[0]
+        # of the moment about the axis, both sides may cancel
+        least = 1e-10 * outer ** (3 + power)
+        area = quad(section, -half, half, points=kinks, epsabs=least * power, epsrel=1e-10)[0]
         return area / math.cos(self.inclination)
 
     def edges(self, radius: float) -> tuple[float, float]:

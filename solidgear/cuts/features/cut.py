@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, ClassVar, NamedTuple
 
@@ -112,6 +113,12 @@ class Cut(OnSegment):
         """
         raise NotImplementedError
 
+    def centre(self, outer: float, inner: float) -> tuple[float, float]:
+        """Return the centre of the volume cut from a segment of these radii, m: its distance from the
+        middle plane and its height over the axis; along the shaft it is in the middle.
+        """
+        raise NotImplementedError
+
     def edges(self, radius: float) -> tuple[float, float]:
         """Return the largest element edges that resolve straight and curved parts of the cut, m."""
         raise NotImplementedError
@@ -151,6 +158,29 @@ class Long(Cut):
     def half_width(self, radius: float) -> float:
         """Return half the width of the floor, m."""
         raise NotImplementedError
+
+    def along(self, side: float, radius: float) -> float:
+        """Return the length of the floor at a distance from the middle plane, m."""
+        return self.length
+
+    def _moment(self, outer: float, power: int) -> float:
+        """Return the integral of a power of the height over the volume of the cut."""
+        from scipy.integrate import quad  # slow to import, and seldom needed
+
+        floor, half = self.floor(outer), self.half_width(outer)
+
+        def section(x: float) -> float:
+            crown = math.sqrt(outer**2 - x * x)
+            height = (crown ** (power + 1) - floor ** (power + 1)) / (power + 1)
+            return height * self.along(x, outer)
+
+        return 2 * quad(section, 0, half, epsabs=0, epsrel=1e-12)[0]
+
+    def volume(self, outer: float, inner: float) -> float | None:
+        return None if self.floor(outer) < inner else self._moment(outer, 0)
+
+    def centre(self, outer: float, inner: float) -> tuple[float, float]:
+        return 0.0, self._moment(outer, 1) / self._moment(outer, 0)
 
     @property
     def rounded(self) -> bool:

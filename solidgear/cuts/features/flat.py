@@ -28,19 +28,6 @@ class Flat(Long):
         (lo, hi), wide, floor = self.reach(radius), 2 * (radius + top), self.floor(radius)
         return occ.addBox(-wide / 2, lo, floor, wide, hi - lo, radius + top - floor)
 
-    def volume(self, outer: float, inner: float) -> float | None:
-        from scipy.integrate import quad
-
-        floor = self.floor(outer)
-        if floor < inner:
-            return None
-
-        def height(x: float) -> float:
-            return math.sqrt(outer**2 - x * x) - floor
-
-        half = self.half_width(outer)
-        return 2 * quad(height, 0, half, epsabs=0, epsrel=1e-12)[0] * self.length
-
     def edges(self, radius: float) -> tuple[float, float]:
         return self.half_width(radius) / 2, math.inf
 

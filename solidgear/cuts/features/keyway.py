@@ -104,20 +104,11 @@ class Keyway(Long):
         drawn = occ.extrude([(2, occ.addPlaneSurface([loop]))], 0, 0, self.depth + top)
         return next(tag for dim, tag in drawn if dim == 3)
 
-    def volume(self, outer: float, inner: float) -> float | None:
-        from scipy.integrate import quad
-
-        floor, half = self.floor(outer), self.width / 2
-        if floor < inner:
-            return None
-
-        def section(x: float) -> float:
-            along = self.length
-            if self.rounded:
-                along = along - 2 * half + 2 * math.sqrt(half**2 - x * x)
-            return (math.sqrt(outer**2 - x * x) - floor) * along
-
-        return 2 * quad(section, 0, half, epsabs=0, epsrel=1e-12)[0]
+    def along(self, side: float, radius: float) -> float:
+        half = self.width / 2
+        if not self.rounded:
+            return self.length
+        return self.length - 2 * half + 2 * math.sqrt(half**2 - side * side)
 
     def edges(self, radius: float) -> tuple[float, float]:
         # half a circle of fewer than four edges is no end of a keyway: five leave room for them

@@ -14,7 +14,16 @@ import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import Choice
-from solidgear.core import DOF_NAMES, WITHIN, Sheeted, SolidgearError, gap_verdict, listed, pinned
+from solidgear.core import (
+    DOF_NAMES,
+    LADDER,
+    WITHIN,
+    Sheeted,
+    SolidgearError,
+    gap_verdict,
+    listed,
+    pinned,
+)
 from solidgear.core.plain import plain
 from solidgear.core.scene.acting import holders
 from solidgear.strength.deflection.face_load import FaceLoad, face_loads
@@ -39,11 +48,11 @@ from solidgear.trains.load.twist import still_station
 
 #: of the largest motion or load of all places; less is rounding
 ROUNDING = 1e-8
-#: models that a deflection is solved with, the cheapest first
-MODELS = (RIGID, "euler", "timoshenko", JUDGE)
+#: models that a deflection is solved with before the solids that judge, the cheapest first
+CHEAPER = (RIGID, "euler", "timoshenko")
 MOVED = ("m moved",) * 3 + ("rad moved",) * 3
 #: why numbers of a shaft alone have no error bar
-WITHOUT_BAR = f"they come with the model {JUDGE}, which is not among the models"
+WITHOUT_BAR = f"they come with a solid, such as {JUDGE}, which is not among the models"
 
 
 @dataclass(frozen=True)
@@ -94,9 +103,11 @@ class Deflection:
     led: str = ""
     statics: Statics | None = None  #: of a shaft alone
     lumped: tuple[str, ...] = ()  #: names of the lumped points of a shaft alone
-    unbounded: str = ""  #: why a mesh has no error bar; empty where it has
     still: str = (
         ""  #: station of a twisted shaft alone that does not turn; empty where bearings hold it
+    )
+    why_without_bar: str = (
+        ""  #: reason why its solids have no bars; empty where they have, or are none
     )
 
     @property
@@ -133,6 +144,14 @@ class Deflection:
     def barred(self) -> bool:
         """Whether the meshes of the model have error bars."""
         return any(m.bar is not None for m in self.compared)
+
+    @property
+    def bars_by(self) -> str:
+        """Where the error bars of the meshes come from, in words."""
+        models = [LADDER[m] for m in self.models.values() if m in LADDER]
+        return (
+            listed(dict.fromkeys(m.bars_by for m in models if m.bars_by)) or LADDER[JUDGE].bars_by
+        )
 
     def as_dict(self) -> dict[str, Any]:
         """Return plain data in SI for JSON."""
@@ -216,7 +235,7 @@ class Deflections(Sheeted):
         """Reason why no number has an error bar; empty where some have one."""
         if any(solution.barred for solution in self.solutions):
             return ""
-        return self.judge.unbounded or WITHOUT_BAR
+        return self.judge.why_without_bar or WITHOUT_BAR
 
     def verdict(self) -> str:
         """Return a sentence on the cheapest model for the misalignment, or for the motion of the
@@ -263,14 +282,16 @@ class Deflections(Sheeted):
 def deflect(
     assembly: Assembly,
     point: OperatingPoint = AT_REST,
-    models: Sequence[str] = MODELS,
+    models: Sequence[str] = (),
     progress: Callable[[str], None] = lambda text: None,
     every: bool = False,
 ) -> Deflections:
     """Compute deflection and misalignment of a train at an operating point, or the deflection of a
     shaft under the [load] of its scene, by several models of all shafts, the finest last, and by
     that at every operating point if `every`; lumped models have no bearings of their own and are
-    refused, and bearings of catalogue data need no stiffness yet.
+    refused, and bearings of catalogue data need no stiffness yet. By default the last are the solids
+    that model all of each shaft, and those before are of revolution, of the plain parts of shafts with
+    cuts.
 
     Examples
     --------
@@ -284,10 +305,21 @@ def deflect(
     >>> round(sum(float(bearing.load[2]) for bearing in bearings), 6)
     1400.0
     """
+    asked: list[tuple[Assembly, tuple[str, ...]]] = [(assembly, (model,)) for model in models]
+    cautions = list(assembly.data_cautions)
+    if not models:
+        assembly, plain_parts = assembly.at_ports(), assembly.settling(CHEAPER[-1])
+        asked = [(plain_parts, (model,)) for model in CHEAPER]
+        asked.append((assembly, assembly.solids))
+        cautions += (
+            f"{cuts}: {listed(CHEAPER)} leave it out, since they are of revolution; what is shown last "
+            "has it"
+            for cuts in assembly.left_out(CHEAPER[-1])
+        )
     train, solutions = assembly.train, []
-    for model in models:
-        progress(model)
-        solutions.append(deflection(assembly, point, model))
+    for shafts, names in asked:
+        progress(_in_words(names))
+        solutions.append(deflection(shafts, point, *names))
     progress("what the data of bearings leave open")
     solutions[-1] = with_ranges(assembly, solutions[-1])
     standings = tuple(
@@ -296,36 +328,22 @@ def deflect(
     points: list[Deflection] = []
     if every:
         progress(f"{len(train.operation)} operating points")
-        points = deflections(assembly, train.operation, models[-1])
+        points = deflections(assembly, train.operation, *asked[-1][1])
     contacts = assembly.at(point).contacts
     return Deflections(
         title=train.title or train.name,
         tolerance=train.ask.tolerance,
         solutions=tuple(solutions),
         standings=standings,
-        cautions=assembly.data_cautions,
+        cautions=tuple(cautions),
         senses={} if train.is_one_shaft else senses(train, contacts, point.coast),
         points=tuple(points),
         planets=tuple(stage.name for stage in train.stages),
     )
 
 
-def deflect_plain(
-    assembly: Assembly,
-    point: OperatingPoint = AT_REST,
-    progress: Callable[[str], None] = lambda text: None,
-    every: bool = False,
-) -> Deflections:
-    """Compute deflection as :func:`deflect` by its usual models, all of revolution, of the plain parts
-    of shafts with cuts, with a caution that names these.
-    """
-    out = deflect(assembly.settling(MODELS[-1]), point, MODELS, progress, every)
-    cautions = tuple(
-        f"{cuts}: left out, since the models are of revolution; corrected or solid among the models "
-        "has cuts"
-        for cuts in assembly.left_out(MODELS[-1])
-    )
-    return replace(out, cautions=(*out.cautions, *cautions))
+def _in_words(models: Sequence[str]) -> str:
+    return models[0] if len(models) == 1 else ", ".join(models)
 
 
 def deflection(assembly: Assembly, point: OperatingPoint, *models: str) -> Deflection:
@@ -347,7 +365,8 @@ def deflections(
     for model in by_shaft.values():
         if model.partition("/")[0] in LUMPED:
             raise SolidgearError(
-                f"a {model} shaft has its bearings condensed into it; use one of {', '.join(MODELS)}"
+                f"a {model} shaft has its bearings condensed into it; use one of "
+                f"{', '.join((*CHEAPER, JUDGE))}"
             )
     for side, model in by_shaft.items():
         assembly.shaft_model(side, model)  # no settling to be timed
@@ -421,7 +440,7 @@ def _solution(
         statics=_statics(assembly, load, shafts),
         lumped=() if load is None else tuple(p.name for p in assembly.scenes[ALONE].ports),
         still=_still(assembly, load),
-        unbounded=errors.unbounded,
+        why_without_bar=errors.why_none,
     )
 
 

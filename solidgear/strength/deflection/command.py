@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from solidgear.show.command import command
-from solidgear.show.options import BY_MODEL, Shown, relative
+from solidgear.show.options import BY_MODEL, Settings, Shown, options, relative
 from solidgear.show.sheet import present
 from solidgear.strength.acting import Acting, AtRestFile
 from solidgear.strength.deflection.study import deflect as deflected
@@ -24,17 +24,18 @@ def deflect(
         typer.Option(
             *BY_MODEL,
             help="Model of every shaft; repeatable, the finest last. By default rigid, "
-            "euler, timoshenko and harmonic.",
+            "euler and timoshenko, and the cheapest solid that models all of a shaft.",
         ),
     ] = None,
     tol: Annotated[
         float | None,
         relative(
             "--tol",
-            "Relative error that meshes of harmonic shafts may leave in the motions of gears; by "
-            "default a tenth of the file's tolerance.",
+            "Relative error that meshes of solid shafts may leave in the motions of gears; by "
+            "default a tenth of the file's tolerance for harmonic ones, and all of it for 3D ones.",
         ),
     ] = None,
+    settings: Settings = None,
     out: Annotated[
         Path | None,
         typer.Option("--out", "-o", help="Folder for a page, deflection lines and their chart."),
@@ -42,9 +43,14 @@ def deflect(
     run: Shown,
 ) -> None:
     present(
-        lambda progress: deflected(file, models, **vars(acting), tol=tol, progress=progress).sheet(
-            run.units
-        ),
+        lambda progress: deflected(
+            file,
+            models,
+            **vars(acting),
+            tol=tol,
+            settings=options(settings),
+            progress=progress,
+        ).sheet(run.units),
         run,
         out,
     )

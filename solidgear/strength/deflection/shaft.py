@@ -11,7 +11,7 @@ from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.life import Life, life
 from solidgear.bearings.row import Contacts
-from solidgear.core import Bearing, Body, Scene, System
+from solidgear.core import LADDER, Bearing, Body, Scene, System
 from solidgear.core.frames import shift
 from solidgear.core.solve.naming import Projection
 from solidgear.trains.system.equilibrium import SystemEquilibrium
@@ -172,7 +172,9 @@ def _sections(body: Body, length: float) -> _Sections:
     guessed.
     """
     stations = np.linspace(0.0, length, STATIONS)
-    if all(block.sections is None for block in body.blocks):
+    # a solid has error bars, and nodes all along
+    solid = body.fidelity in LADDER and bool(LADDER[body.fidelity].bars_by)
+    if not solid and all(block.sections is None for block in body.blocks):
         stations = np.unique(min((block.y for block in body.blocks), key=len))
     return _Sections(stations, Projection(body, stations))
 

@@ -43,7 +43,7 @@ TURN_SHOWN = (
     "Mesh force of every planet over a turn of its carrier from the file's position on; bearings "
     "have their stiffness at rest."
 )
-OF_BARS = f"Error bar: of the mesh, by local problems; none below {LEAST:g} % is shown."
+OF_BARS = f"Error bar: of the mesh, by {{}}; none below {LEAST:g} % is shown."
 
 
 def sheet(deflected: Deflections, units: Units) -> Sheet:
@@ -141,8 +141,8 @@ def misalignment(deflected: Deflections, units: Units = ENGINEERING) -> Table:
         range_ = Cell(least, "", " to ".join(ends) or DASH)
         rows.append([name, *shown, share, range_, largest, m.si_unit])
     note = (
-        f"{meanings(measures, units)}. Error bar: of the last model's mesh, "
-        "by local problems; models differ by what their theory leaves out."
+        f"{meanings(measures, units)}. Error bar: of the last model's mesh, by "
+        f"{deflected.judge.bars_by}; models differ by what their theory leaves out."
     )
     if has_ranges:
         note += " Range: by estimated insides and classes of clearance of the bearings. "
@@ -321,7 +321,7 @@ def displacements(deflected: Deflection, units: Units = ENGINEERING) -> Table:
             keys = (name,) if deflected.load is not None else (f"{shaft.name}.{name}", only)
             rows[-1:] = _with_bars(rows[-1], [_bars(deflected, key, units) for key in keys])
     if deflected.barred:
-        note += f" {OF_BARS}"
+        note += f" {OF_BARS.format(deflected.bars_by)}"
     columns = [word("place"), *_six(MOVED, units), *_beside(BAR)]
     return Table("Displacements", columns, rows, note)
 
@@ -359,9 +359,12 @@ def motions(deflected: Deflections, units: Units = ENGINEERING) -> list[Table]:
         beside = [value for six in of_judge for value in six]
         for line in _with_bars(row, [_bars(solution, port, units)]):
             rows.append(type(line)([*line, *beside]))
-    note = f"{OF_BARS} Models differ by what their theory leaves out."
-    if deflected.why_without_bar:
-        note = f"No error bars: {deflected.why_without_bar}."
+    note = f"No error bars: {deflected.why_without_bar}."
+    barred = [solution for solution in deflected.solutions if solution.barred]
+    if barred:
+        note = (
+            f"{OF_BARS.format(barred[-1].bars_by)} Models differ by what their theory leaves out."
+        )
     columns = [word("model"), *_six(MOVED, units), *_beside(BAR)]
     for end, six in ends.items():
         columns += _beside(end)

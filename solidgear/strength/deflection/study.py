@@ -4,12 +4,13 @@ object.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Unpack
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any, Unpack
 
-from solidgear.core import Source, explained
+from solidgear.core import LADDER, SolidgearError, Source, explained
 from solidgear.strength.acting import Acting, Under
 from solidgear.strength.deflection import at_rest
+from solidgear.trains.assembly.shaft import checked_model
 from solidgear.trains.file.train import Train
 
 
@@ -18,6 +19,7 @@ def deflect(
     models: str | Sequence[str] | None = None,
     *,
     tol: float | str | None = None,
+    settings: Mapping[str, Any] | None = None,
     progress: Callable[[str], None] = lambda text: None,
     **under: Unpack[Under],
 ) -> at_rest.Deflections:
@@ -28,11 +30,14 @@ def deflect(
     source : path, dict, Scene or Train
         A scene or train: its file (TOML), the tables of one, or an object.
     models : str or sequence of str, optional
-        Models of all shafts that are compared, the finest last; by default rigid, euler,
-        timoshenko and harmonic, of shafts with cuts of their plain parts.
+        Models of all shafts that are compared, the finest last; by default rigid, euler and
+        timoshenko, of shafts with cuts of their plain parts, and the cheapest solid that models all of
+        each shaft.
     tol : float, optional
-        Relative error that meshes of harmonic shafts may leave in the motions of gears; a tenth of
-        the tolerance of the train by default.
+        Relative error that meshes of solid shafts may leave in the motions of gears; by default a tenth
+        of the tolerance of the file for harmonic ones, all of it for 3D ones.
+    settings : mapping, optional
+        Builder options of the last of the models that are named, such as ``{"refinement": 0.5}``.
     progress : callable
         Called with a sentence at every step.
     **under
@@ -67,8 +72,11 @@ def deflect(
     assembly, at = Acting(**under).read(source, tol)
     chosen = any(under.get(key) is not None for key in ("torque", "point", "case"))
     every_point = not chosen and len(assembly.train.operation) > 1
-    names = (models,) if isinstance(models, str) else models or at_rest.MODELS
+    names = (models,) if isinstance(models, str) else tuple(models or ())
+    if settings:
+        if not names:
+            raise SolidgearError("settings are of a model that is named: give `models` as well")
+        kind, base = checked_model(names[-1])
+        assembly.settings = {base or kind: LADDER[base or kind].checked(dict(settings))}
     with explained(source):
-        if models:
-            return at_rest.deflect(assembly, at, names, progress, every_point)
-        return at_rest.deflect_plain(assembly, at, progress, every_point)
+        return at_rest.deflect(assembly, at, names, progress, every_point)

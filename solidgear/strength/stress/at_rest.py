@@ -1,9 +1,10 @@
 """Stress of the shafts of a train at rest, or of a shaft alone, under the loads of their equilibrium.
 
 A shaft of a train is free but for the loads on its ports: teeth, springs, bearings, the weight of a
-wheel on it. A shaft alone has a load at the port and the reactions of the bearings. Both settle as
-plain bodies of revolution: cuts change reactions by next to nothing. Models that are made for cuts
-settle with them.
+wheel on it. A shaft alone has a load at the port and the reactions of the bearings. Both settle as the
+cheapest solids that model all of each shaft; where the bearings of a shaft alone resist each motion once,
+reactions follow from statics, whatever the shaft is like. A model that is named settles its plain part
+where it does not hold cuts.
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 
 from solidgear.bearings.bearing_life import left_open
 from solidgear.bearings.solved import AS_STATED, Choice
-from solidgear.core import LADDER, Scene, Sheeted, SolidgearError, listed
+from solidgear.core import Scene, Sheeted, SolidgearError, listed
 from solidgear.core.plain import plain
 from solidgear.core.scene.filleted import filleted
 from solidgear.parts.body_file import BodyFile
@@ -38,13 +39,18 @@ from solidgear.strength.stress.shaft import (
 )
 from solidgear.strength.stress.solid_notches import FINEST_LOCAL, SolidNotch, solid_notches
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.shaft import mix_label
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.load.state import OperatingState
 
-#: default model on which shafts and bearings settle
-MODEL = LADDER.judges[0]
+#: word for reactions that hang on no model
+STATICS = "statics"
+#: model that such reactions are computed by, the cheapest
+BEAM = "euler"
+#: of the largest stiffness of a bearing that is rounding
+ROUNDING = 1e-12
 #: caution on the results without an error bar
 WITHOUT_BAR = "form factors have error bars; reactions and section forces come from one mesh"
 
@@ -185,40 +191,40 @@ class StressAtRest(Sheeted):
 def stress_at_rest(
     assembly: Assembly,
     point: OperatingPoint = AT_REST,
-    model: str = MODEL,
+    model: str = "",
     asked: StressSettings = StressSettings(),
     progress: Progress = lambda text: None,
 ) -> StressAtRest:
     """Compute the stress of all shafts of a train at an operating point, or of a shaft under the
-    loads of its scene; shafts and bearings settle on a model, no lumped one, which has no places.
-    Bearings of catalogue data need no stiffness yet.
+    loads of its scene; shafts and bearings settle on a model, no lumped one, which has no places, by
+    default on what models all of each shaft. Bearings of catalogue data need no stiffness yet.
     """
     load = loads_alone(assembly.train, point)
-    progress(model)
     rounded = {
         side: shaft.with_changes(scene=filleted(shaft.scene))
         for side, shaft in assembly.asked_train.shafts.items()
     }
     train = assembly.asked_train.with_changes(shafts=rounded)
     train = train.with_solved_meshes(assembly.teeth.solved)
-    settling = replace(assembly, train=train).settling(model)
-    usual = Operating(settling, model).at(point)
+    settling, models, label = _settled_by(replace(assembly, train=train), model)
+    progress(label)
+    usual = Operating(settling, *models).at(point)
 
     def acting(choice: Choice) -> dict[str, ShaftLoads]:
         as_stated = choice == AS_STATED
-        state = usual if as_stated else Operating(settling, model, choice=choice).at(point)
+        state = usual if as_stated else Operating(settling, *models, choice=choice).at(point)
         return _on_shafts(settling, state)
 
-    duty = _duty(train, settling, model, asked) if asked.duty else {}
+    duty = _duty(train, settling, models, asked) if asked.duty else {}
     several = train.is_one_shaft and len(train.operation) > 1
-    at_points = _at_points(train, settling, model) if several and not asked.duty else []
+    at_points = _at_points(train, settling, models) if several and not asked.duty else []
     shafts, open_by = _shafts(train, acting, asked, duty, progress)
     files = {side: shaft.scene.body for side, shaft in assembly.train.shafts.items()}
     left_out = [text for k in files for text in _file_cautions(files[k], train.shafts[k].scene)]
     torque = _torque_cautions(train) if load is None else _load_cautions(train, load)
     return StressAtRest(
         title=train.title or train.name,
-        model=model,
+        model=label,
         under=load or AtPoint(point, usual.mesh_force),
         asked=asked,
         shafts=shafts,
@@ -229,21 +235,51 @@ def stress_at_rest(
     )
 
 
+def _settled_by(assembly: Assembly, model: str) -> tuple[Assembly, tuple[str, ...], str]:
+    """Return the shafts on which bearings settle, their models, and these in words."""
+    if model:
+        return assembly.settling(model), (model,), model
+    if assembly.left_out(BEAM) and assembly.train.is_one_shaft:
+        if _is_determinate(assembly.scenes[ALONE]):
+            return assembly.settling(BEAM), (BEAM,), STATICS
+    models = assembly.solids
+    label = models[0] if len(models) == 1 else mix_label(assembly.models_by_shaft(models))
+    return assembly.at_ports(), models, label
+
+
+def _is_determinate(scene: Scene) -> bool:
+    """Return whether bearings of a shaft resist each of its motions once at most, so that their loads
+    follow from equilibrium: with the turning about the axis for itself.
+    """
+    across = [0, 1, 2, 3, 5]
+    count, turning = 0, 0
+    for bearing in scene.bearings:
+        if bearing.catalogue is not None or bearing.matrix is None:
+            return False
+        stiffness = np.array(bearing.stiffness)
+        least = ROUNDING * np.abs(stiffness).max(initial=0.0)
+        count += int(np.linalg.matrix_rank(stiffness[np.ix_(across, across)], tol=least))
+        turning += int(stiffness[4, 4] > 0)
+    return count <= len(across) and turning <= 1
+
+
 def _duty(
-    train: Train, settling: Assembly, model: str, asked: StressSettings
+    train: Train, settling: Assembly, models: Sequence[str], asked: StressSettings
 ) -> dict[str, list[DutyForces]]:
     """Return section forces and turns of every shaft over the points of the duty table."""
     turns = cycles_of(train, asked.conditions)
     out: dict[str, list[DutyForces]] = {side: [] for side in turns}
-    for k, (point, by_side) in enumerate(zip(train.operation, _at_points(train, settling, model))):
+    for k, (point, by_side) in enumerate(zip(train.operation, _at_points(train, settling, models))):
         for side, forces in by_side.items():
             out[side].append(DutyForces(point.label, forces, turns[side][k]))
     return out
 
 
-def _at_points(train: Train, settling: Assembly, model: str) -> list[dict[str, SectionForces]]:
+def _at_points(
+    train: Train, settling: Assembly, models: Sequence[str]
+) -> list[dict[str, SectionForces]]:
     """Return section forces of every shaft at all points of a train, or in all cases of a shaft."""
-    operating = Operating(settling, model)
+    operating = Operating(settling, *models)
     out, state = [], None
     for point in train.operation:
         state = operating.at(point, state)
@@ -274,10 +310,12 @@ def _file_cautions(file: BodyFile | None, scene: Scene) -> Iterator[str]:
     """
     if file is None:
         return
-    if not file.round:
+    if file.uneven:
+        stretches = listed(f"{1e3 * lo:.6g} to {1e3 * hi:.6g}" for lo, hi in file.uneven)
         yield (
-            f"{file.name} is not of revolution: stress is for its round part, without cuts and "
-            "projections"
+            f"{file.name} is not round from y = {stretches} mm: sections there have no nominal "
+            "stress, and cuts in it are no notches here; solve them as a 3D solid, or rate them as "
+            "[[feature]] of a shaft of segments"
         )
     if cones := len(file.tori) - len(scene.blends):
         yield (

@@ -11,7 +11,7 @@ import typer
 
 from solidgear.core import SceneError, SolidgearError
 from solidgear.show.command import Group, command
-from solidgear.show.options import BY_MODEL, MODEL, Choice, Shown, relative
+from solidgear.show.options import BY_MODEL, Choice, Shown, relative
 from solidgear.show.sheet import present
 from solidgear.strength.acting import Acting, AtRestFile
 from solidgear.strength.stress.conditions import Conditions
@@ -127,8 +127,13 @@ def stress(
     *,
     acting: Acting,
     fidelity: Annotated[
-        Choice, typer.Option(*BY_MODEL, help="Model for bearing reactions.")
-    ] = MODEL,
+        Choice | None,
+        typer.Option(
+            *BY_MODEL,
+            help="Model for bearing reactions; by default the cheapest solid that models all of a "
+            "shaft, or none where they follow from statics.",
+        ),
+    ] = None,
     tol: Annotated[
         float,
         relative("--tol", "Error bar allowed for a form factor."),
@@ -153,7 +158,7 @@ def stress(
     present(
         lambda progress: stressed(
             file,
-            str(fidelity),
+            str(fidelity or ""),
             **vars(acting),
             tol=tol,
             local=local,

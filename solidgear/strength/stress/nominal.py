@@ -106,9 +106,14 @@ def nominal_stress(
     )
 
 
-def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[NominalRow, ...]:
+def nominal_rows(
+    segments: Sequence[Segment],
+    forces: SectionForces,
+    uneven: Sequence[tuple[float, float]] = (),
+) -> tuple[NominalRow, ...]:
     """Return cross-sections on both sides of every place where a load acts, a segment ends or the
-    bending moment is largest, in the order of their places, the side before each first.
+    bending moment is largest, in the order of their places, the side before each first; none in
+    stretches that are uneven, m, which are neither rings nor discs.
     """
     ends = [segment.y1 for segment in segments[:-1]]
     names = {y: name for y, name in zip(forces.y.tolist(), forces.names) if name}
@@ -119,6 +124,9 @@ def nominal_rows(segments: Sequence[Segment], forces: SectionForces) -> tuple[No
     rows = []
     for y in marks:
         for segment, six in _sides(segments, forces, y):
+            inside = min(max(y, segment.y0 + 2 * TOUCH), segment.y1 - 2 * TOUCH)
+            if any(lo < inside < hi for lo, hi in uneven):
+                continue
             inner, outer = segment.radius_at(min(max(y, segment.y0), segment.y1))
             section = CrossSection(outer, inner)
             stress = nominal_stress(section, six)

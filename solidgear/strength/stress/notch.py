@@ -24,6 +24,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
@@ -42,6 +43,11 @@ if TYPE_CHECKING:
 REACH = 4.0
 #: least rest of a segment, in extents of a fillet along it
 ROOM = 3.0
+#: solved pieces that are kept, some 10 kB each
+KEPT = 64
+#: decimals of lengths, m, that tell one piece from another: beyond is rounding of its place
+DIGITS = 12
+_ENDS = ("y0", "y1", "outer0", "outer1", "inner0", "inner1")
 
 
 class Notched(Protocol):
@@ -301,11 +307,43 @@ def fillet_factors(
     """
     piece = piece_around(scene, name, reach)
     corner = next(c for c in scene.outline.corners if c.name == name)
-    solution = solved(piece, tolerance, orders, refinement)
+    solution = _kept(_Same(piece), tolerance, tuple(orders), refinement)
     section, radius, _ = piece.reference
     return FilletFactors(
         name, corner, section, radius, solution.factors, solution.profiles, solution.steps
     )
+
+
+class _Same:
+    """A piece that equals another one with the same shape and elasticity, wherever it is on its shaft and
+    whatever it is called: rows of a sweep and cases share what was solved.
+    """
+
+    def __init__(self, piece: Piece):
+        self.piece = piece
+        self._shape = (
+            tuple(
+                (*(round(getattr(s, end), DIGITS) for end in _ENDS), s.material.E, s.material.nu)
+                for s in piece.segments
+            ),
+            tuple(
+                (c.kind, c.surface, c.root, c.owner, c.side, c.out, c.name == piece.corner.name)
+                + tuple(round(v, DIGITS) for v in (c.y, c.r, c.axial, c.radial))
+                for c in sorted(piece.outline.corners, key=lambda c: (c.y, c.r))
+            ),
+        )
+
+    def __eq__(self, other: object) -> bool:
+        return isinstance(other, _Same) and self._shape == other._shape
+
+    def __hash__(self) -> int:
+        return hash(self._shape)
+
+
+@lru_cache(maxsize=KEPT)
+def _kept(same: _Same, tolerance: float, orders: tuple[int, ...], refinement: float) -> Solution:
+    """Solve a piece, or return what was solved of an equal one."""
+    return solved(same.piece, tolerance, orders, refinement)
 
 
 @dataclass(frozen=True)

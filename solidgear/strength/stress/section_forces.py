@@ -293,7 +293,7 @@ def forces_of(
     if gravity is None:
         return section_forces(on_ports(scene, loads), scene.length)
     g = np.asarray(gravity, float)
-    spread = SpreadWeight(scene.outline, g)
+    spread = SpreadWeight.of(scene, g)
     return section_forces([*on_ports(scene, loads), *_masses(scene, g)], scene.length, spread)
 
 

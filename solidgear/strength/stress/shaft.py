@@ -208,7 +208,7 @@ def shaft_stress(
                 remarks.append(f"no stress there: {error}")
     return ShaftStress(
         forces,
-        nominal_rows(scene.segments, forces),
+        nominal_rows(scene.segments, forces, () if scene.body is None else scene.body.uneven),
         tuple(notches),
         drawn,
         unrated,

@@ -10,13 +10,12 @@ from solidgear.strength.acting import Acting, Under
 from solidgear.strength.stress.at_rest import StressAtRest, StressSettings, stress_at_rest
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.notch import ENOUGH
-from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.train import Train
 
 
 def stress(
     source: Source | Train,
-    model: str = JUDGE,
+    model: str = "",
     *,
     tol: float | str = ENOUGH,
     local: float | str | None = None,
@@ -32,7 +31,8 @@ def stress(
     source : path, dict, Scene or Train
         A scene or train: its file (TOML), the tables of one, or an object.
     model : str
-        Model for bearing reactions.
+        Model for bearing reactions; by default the cheapest solid that models all of each shaft, or
+        none where they follow from statics.
     tol : float
         Error bar allowed for a form factor, relative.
     local : float, optional

@@ -33,6 +33,7 @@ from solidgear.core import (
     show,
 )
 from solidgear.core.bounds.refining import Meshed, refined
+from solidgear.core.ladder import solid_of
 from solidgear.core.reduction.craig_bampton import craig_bampton
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
@@ -66,6 +67,7 @@ from solidgear.trains.assembly.shaft import (
     JUDGE,
     LUMPED,
     RIGID,
+    Level,
     ShaftModel,
     checked_model,
     lumped,
@@ -107,6 +109,9 @@ class Assembly:
     #: file over the share of it that a judge may take
     tol: float | str | None = None
     highest_hz: float | None = None  #: up to which modes are wanted; by default that of the file
+    #: true for bodies of the plain parts of shafts by models that do not hold their cuts; the shafts
+    #: keep their mass
+    plain_bodies: bool = False
 
     @classmethod
     def of(cls, scene: Scene, kept: int = KEPT, tol: float | str | None = None) -> Assembly:
@@ -136,7 +141,7 @@ class Assembly:
         #: frequencies up to which the meshes of harmonic shafts were chosen, Hz
         self._followed: dict[str, float] = {}
         #: harmonic shafts whose meshes were chosen at rest
-        self._chosen_at_rest: set[str] = set()
+        self.chosen_at_rest: set[str] = set()
         self._read_train(self.train)
 
     def _read_train(self, train: Train) -> None:
@@ -146,8 +151,8 @@ class Assembly:
         self._at_points: dict[Hashable, Assembly] = {}
         self._point: Hashable = None  #: that of the numbers which stand here
         self.scenes: dict[str, Scene] = {side: train.shaft(side) for side in train.shafts}
-        #: trains without cuts, by the model that settles them: built once for all ends of open data
-        self._plain: dict[str, Assembly] = {}
+        #: the train with plain bodies: built once for all ends of open data
+        self._plain: Assembly | None = None
         self._mesh(self.teeth.first(), train.point is not None and train.point.coast)
 
     def _mesh(self, train: Train, coast: bool) -> None:
@@ -164,8 +169,12 @@ class Assembly:
     @property
     def tolerance(self) -> float:
         """Relative error that the meshes of harmonic shafts may leave."""
+        return self.tolerance_of(JUDGE)
+
+    def tolerance_of(self, model: str) -> float:
+        """Return the relative error that the mesh of a shaft by a model may leave."""
         if self.tol is None:
-            return self.train.ask.tolerance / LADDER[JUDGE].share
+            return self.train.ask.tolerance / LADDER[model].share
         return float(self.tol)
 
     @property
@@ -186,6 +195,11 @@ class Assembly:
         shaft_models = models if len(models) == len(sides) else [*models] * len(sides)
         return dict(zip(sides, shaft_models))
 
+    def meshed_scene(self, side: str, model: str) -> Scene:
+        """Return the scene that the body of a shaft by a model is built from."""
+        scene = self.scenes[side]
+        return scene.plain if self.plain_bodies and LADDER[model].left_out(scene) else scene
+
     def shaft_model(self, side: str, model: str) -> ShaftModel:
         """Return a shaft by a model, built when it is first requested."""
         if (side, model) not in self._models:
@@ -195,7 +209,7 @@ class Assembly:
             elif base:
                 self._models[side, model] = self._derived_model(side, model, kind, base)
             else:
-                self._set_mesh(side, model, self._first_mesh(side, model))
+                self.set_mesh(side, model, self._first_mesh(side, model))
         return self._models[side, model]
 
     def _of_matrices(self, side: str) -> ShaftModel:
@@ -219,21 +233,24 @@ class Assembly:
         """
         if not LADDER[model].follows:
             return None
-        plan = LADDER[model].meshes_of(self.scenes[side], self._options(side, model))
+        plan = LADDER[model].meshes_of(self.meshed_scene(side, model), self.options_of(side, model))
         return None if plan.fixed else Meshed(fixed=plan.levels[0])
 
-    def _options(self, side: str, model: str) -> dict:
+    def options_of(self, side: str, model: str) -> dict:
+        """Return the builder options that were given for a shaft by a model."""
         return {**self.settings.get(model, {}), **self.settings.get((side, model), {})}
 
-    def _set_mesh(self, side: str, model: str, mesh: Meshed | None) -> None:
+    def set_mesh(self, side: str, model: str, mesh: Meshed | Level | None) -> None:
         """Build and reduce a shaft on a mesh, in place of that before and all derived from it."""
         start, earlier = perf_counter(), 0.0
         before = self._models.get((side, model))
         if before is not None:
             earlier = before.seconds
             before.body.cache.clear()  # its factor need not be held beside the next one
-        options = self._options(side, model) if mesh is None else mesh.options()
-        shaft = self._reduce(side, model, build(self.scenes[side], model, **options), start)
+        options = self.options_of(side, model) if mesh is None else mesh.options()
+        shaft = self._reduce(
+            side, model, build(self.meshed_scene(side, model), model, **options), start
+        )
         for name in names_from(model, (*LUMPED, RIGID)):
             self._models.pop((side, name), None)
         self._models[side, model] = replace(shaft, mesh=mesh, seconds=shaft.seconds + earlier)
@@ -242,7 +259,7 @@ class Assembly:
     def refine(self, meshes: Mapping[str, Meshed]) -> None:
         """Build and reduce harmonic shafts on other meshes."""
         for side, mesh in meshes.items():
-            self._set_mesh(side, JUDGE, mesh)
+            self.set_mesh(side, JUDGE, mesh)
 
     @pinned
     def follow(
@@ -262,16 +279,6 @@ class Assembly:
         if sides:
             refine_meshes(lambda: self._finer(solved, limit, most), self.refine)
 
-    def to_be_followed_at_rest(self, models: Sequence[str]) -> bool:
-        """Return True once for every harmonic shaft of some models whose mesh follows the error bars
-        of the first state at rest.
-        """
-        sides = {*self.following(self.solved_models(models))}
-        if sides <= self._chosen_at_rest:
-            return False
-        self._chosen_at_rest |= sides
-        return True
-
     @pinned
     def follow_alone(self, side: str, model: str) -> ShaftModel:
         """Return a shaft by a model, a harmonic solid on a mesh that follows the error bars of its
@@ -281,8 +288,8 @@ class Assembly:
 
         def finer() -> tuple[dict[str, Meshed], float]:
             solid = self.shaft_model(side, JUDGE)
-            scene = self.scenes[side]
-            if solid.mesh is not None and highest_resolved(scene, solid.body) < limit:
+            scene = self.meshed_scene(side, JUDGE)
+            if isinstance(solid.mesh, Meshed) and highest_resolved(scene, solid.body) < limit:
                 return {side: resolving(solid.mesh)}, np.inf
             errors = flexibility_errors(side, scene, solid.body)
             if errors is None:
@@ -307,7 +314,7 @@ class Assembly:
     def following(self, models: Mapping[str, str]) -> dict[str, Meshed]:
         """Return the meshes of harmonic shafts that follow error bars."""
         solids = [self.shaft_model(s, JUDGE) for s, model in models.items() if model == JUDGE]
-        return {solid.side: solid.mesh for solid in solids if solid.mesh is not None}
+        return {s.side: s.mesh for s in solids if isinstance(s.mesh, Meshed)}
 
     def _finer(
         self, models: Mapping[str, str], limit: float, most: int | None
@@ -322,7 +329,8 @@ class Assembly:
             count = min(count, most)
         meshes, bodies = self.following(models), self._solids(models)
         highest = min(limit, float(omega[count - 1]) / (2 * np.pi))
-        coarse = [s for s in meshes if highest_resolved(self.scenes[s], bodies[s]) < highest]
+        scenes = {side: self.meshed_scene(side, JUDGE) for side in meshes}
+        coarse = [s for s in meshes if highest_resolved(scenes[s], bodies[s]) < highest]
         if coarse:
             return {side: resolving(meshes[side]) for side in coarse}, np.inf
         # one more is looked at where a list of modes ends
@@ -337,9 +345,10 @@ class Assembly:
         finer = {}
         for side, need in needs.items():
             solid = self.shaft_model(side, JUDGE)
-            if solid.mesh is None:
+            if not isinstance(solid.mesh, Meshed):
                 continue
-            mesh = refined(self.scenes[side], solid.body, solid.mesh, need.score, need.tolerance)
+            scene = self.meshed_scene(side, JUDGE)
+            mesh = refined(scene, solid.body, solid.mesh, need.score, need.tolerance)
             if mesh is not None:
                 finer[side] = mesh
         return finer
@@ -359,7 +368,8 @@ class Assembly:
     def _errors(self, system: System, models: Mapping[str, str], n: int) -> MeshErrors | None:
         key = tuple(models.values())
         if key not in self.errors or len(self.errors[key].bars) < n:
-            errors = mesh_errors(system, self.scenes, self._solids(models), n)
+            scenes = {side: self.meshed_scene(side, JUDGE) for side in self.scenes}
+            errors = mesh_errors(system, scenes, self._solids(models), n)
             if errors is None:
                 return None
             self.errors[key] = errors
@@ -379,6 +389,10 @@ class Assembly:
         return ShaftModel(
             side=side, model=model, part=part, body=body, unknowns=body.size, seconds=seconds
         )
+
+    def is_built(self, side: str, model: str) -> bool:
+        """Return whether a shaft by a model has been built."""
+        return (side, model) in self._models
 
     def add_model(self, model: ShaftModel) -> None:
         """Add a shaft's model of another assembly, whose shafts differ in their bearings alone."""
@@ -451,7 +465,7 @@ class Assembly:
         assembly._models, assembly.scenes, assembly.errors = bodies, {}, {}
         assembly._coast, assembly._flanks = None, {}
         assembly._followed = dict(self._followed)
-        assembly._chosen_at_rest = set(self._chosen_at_rest)
+        assembly.chosen_at_rest = set(self.chosen_at_rest)
         return assembly
 
     @property
@@ -481,32 +495,36 @@ class Assembly:
                 sentences += matrices_cautions(side, shaft.matrices, self.scenes[side])
         return (*sentences, *housing_cautions(self.train, self.places))
 
+    @property
+    def solids(self) -> tuple[str, ...]:
+        """Cheapest solids that model all of every shaft, one for all where they are the same."""
+        solids = tuple(map(solid_of, self.scenes.values()))
+        return solids[:1] if len({*solids}) == 1 else solids
+
     def left_out(self, model: str) -> tuple[str, ...]:
         """Return the cuts and teeth that a model of revolution leaves out of all shafts, in words."""
         labels = (LADDER[model].left_out(scene) for scene in self.scenes.values())
         return tuple(label for label in labels if label)
 
     def settling(self, model: str) -> Assembly:
-        """Return the same train with shafts as a model has them on which only bearings settle: without
-        cuts, unless it is made for them, and with teeth that act at their ports.
+        """Return the same train with shafts as a model has them on which only bearings settle: bodies
+        without cuts, unless it is made for them, and teeth that act at their ports.
         """
+        if not self.left_out(model):
+            return self.at_ports()
+        if self._plain is None:
+            train = self.asked_train.with_solved_meshes(self.teeth.solved)
+            self._plain = replace(self, train=train, plain_bodies=True).at_ports()
+        return self._plain
+
+    def at_ports(self) -> Assembly:
+        """Return the same train with teeth that act at their ports."""
         train = self.asked_train
-        if not self.left_out(model) and not any(mesh.local_harmonics for mesh in train.meshes):
+        if not any(mesh.local_harmonics for mesh in train.meshes):
             return self
-        if model in self._plain:
-            return self._plain[model]
-        shafts = {
-            side: shaft.with_changes(scene=shaft.scene.plain)
-            if LADDER[model].left_out(shaft.scene)
-            else shaft
-            for side, shaft in train.shafts.items()
-        }
         meshes = tuple(mesh.with_changes(local_harmonics=()) for mesh in train.meshes)
-        plain = train.with_changes(shafts=shafts, meshes=meshes)
-        # contact is solved on the plain shafts in any case
-        plain = plain.with_solved_meshes(self.teeth.solved)
-        self._plain[model] = replace(self, train=plain)
-        return self._plain[model]
+        train = train.with_changes(meshes=meshes).with_solved_meshes(self.teeth.solved)
+        return replace(self, train=train)
 
     def at(self, point: OperatingPoint, choice: Choice = AS_STATED) -> Assembly:
         """Return the same train as it meshes at an operating point: with the numbers of its teeth there,
@@ -638,7 +656,7 @@ class Assembly:
         )
         if key not in shaft.local:
             start = perf_counter()
-            part = local_teeth(side, self.scenes[side], shaft.part, shaft.body, meshes)
+            part = local_teeth(side, self.meshed_scene(side, model), shaft.part, shaft.body, meshes)
             shaft.local.clear()  # of mesh points elsewhere
             shaft.local[key] = part
             self._local_seconds += perf_counter() - start

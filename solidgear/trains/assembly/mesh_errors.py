@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
+from typing import Any
 
 import numpy as np
 
@@ -156,8 +157,8 @@ def _ends_below(modes: SystemModes, n: int) -> bool:
 
 
 def refine_meshes(
-    finer: Callable[[], tuple[Mapping[str, Meshed], float]],
-    refine: Callable[[Mapping[str, Meshed]], None],
+    finer: Callable[[], tuple[Mapping[str, Any], float]],
+    refine: Callable[[Any], None],
 ) -> None:
     """Refine meshes of shafts until there are none to refine, or finer ones do not help; `finer`
     returns the next meshes and the largest error bar of the last ones, `refine` solves them.

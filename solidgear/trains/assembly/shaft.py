@@ -15,6 +15,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import numpy as np
 
@@ -82,6 +83,22 @@ def mix_label(models: Mapping[str, str]) -> str:
     return ", ".join(f"{side} {model}" for side, model in models.items())
 
 
+@dataclass(frozen=True)
+class Level:
+    """A mesh of a solid that goes on along a list, coarse to fine."""
+
+    levels: tuple[Mapping[str, Any], ...]  #: builder options of this mesh, and of finer ones
+
+    def options(self) -> dict[str, Any]:
+        """Return the options of the builder."""
+        return dict(self.levels[0])
+
+    @property
+    def finer(self) -> Level | None:
+        """The next mesh; None after the last."""
+        return Level(self.levels[1:]) if len(self.levels) > 1 else None
+
+
 @dataclass(frozen=True, eq=False)
 class ShaftModel:
     """One shaft by one model, a part of a system."""
@@ -92,7 +109,7 @@ class ShaftModel:
     body: Body  #: from which the part is reduced
     unknowns: int  #: of the body's mesh
     seconds: float  #: to build and reduce it, on all meshes that were tried
-    mesh: Meshed | None = None  #: that follows error bars
+    mesh: Meshed | Level | None = None  #: that follows error bars
     #: the part with harmonics that teeth drive at a mesh point, by these
     local: dict[tuple, Part] = field(default_factory=dict, repr=False)
 

@@ -30,11 +30,12 @@ from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_port
 from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques
 from solidgear.trains.assembly.mesh_errors import refine_meshes
-from solidgear.trains.assembly.shaft import JUDGE
+from solidgear.trains.assembly.shaft import JUDGE, Level
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
-from solidgear.trains.load.own_weight import weight_alone
+from solidgear.trains.load.meshes_at_rest import MeshesAtRest
+from solidgear.trains.load.own_weight import weight_at_rest
 from solidgear.trains.load.planet_loads import carrier_torques, centrifugal_load
 from solidgear.trains.load.state import OperatingState, with_settled_bearings
 from solidgear.trains.load.static_errors import StaticErrors
@@ -44,7 +45,6 @@ from solidgear.trains.system.equilibrium import (
     Seats,
     SystemEquilibrium,
     seats_of,
-    weight,
 )
 
 #: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
@@ -123,6 +123,7 @@ class Operating:
         if alike not in self._meshing:
             if len(self._meshing) == FLANKS:
                 del self._meshing[next(iter(self._meshing))]
+            MeshesAtRest(assembly, self.models).begin()
             system = assembly.system(*self.models, bearings=False)
             self._meshing[alike] = OnBearings(system, self._seats)
         return assembly, self._meshing[alike]
@@ -142,7 +143,8 @@ class Operating:
         is settled decides the meshes of harmonic shafts.
         """
         state = self._settled(point, start)
-        if not self.assembly.to_be_followed_at_rest(self.models):
+        meshes_at_rest = MeshesAtRest(self.assembly, self.models)
+        if not meshes_at_rest.to_be_chosen():
             return state
         if any(mesh.local_harmonics for mesh in self.assembly.train.meshes):
             # forces where teeth touch are not those of ports: the shaft by itself decides
@@ -151,14 +153,17 @@ class Operating:
             self._meshing.clear()
             return self._settled(point, None)
 
-        def finer() -> tuple[Mapping[str, Meshed], float]:
-            errors = StaticErrors(self.assembly, state).of_gears()
-            needs = errors.needs(len(errors.bars), self.assembly.tolerance)
-            return self.assembly.finer_meshes(needs), float(errors.bars.max(initial=0.0))
+        tolerance = meshes_at_rest.tolerance
 
-        def refine(meshes: Mapping[str, Meshed]) -> None:
+        def finer() -> tuple[Mapping[str, Meshed | Level], float]:
+            errors = StaticErrors(self.assembly, state).of_gears()
+            needs = errors.needs(len(errors.bars), tolerance)
+            meshes = meshes_at_rest.finer(needs)
+            return meshes, float(errors.bars.max(initial=0.0))
+
+        def refine(meshes: Mapping[str, Meshed | Level]) -> None:
             nonlocal state
-            self.assembly.refine(meshes)
+            meshes_at_rest.refine(meshes)
             self._meshing.clear()
             state = self._settled(point, None)
 
@@ -176,7 +181,8 @@ class Operating:
         loads, notes = self._loads(assembly, point, forces)
         total = seated.system.load(loads) + centrifugal_load(assembly, seated.system, point)
         if point.weight is not None:
-            total = total + self._weight(assembly, seated.system, point)
+            models = assembly.models_by_shaft(self.models)
+            total = total + weight_at_rest(assembly, seated.system, models, point)
         begin = None
         if start is not None and start.point.coast == point.coast:
             begin = start.equilibrium
@@ -215,13 +221,6 @@ class Operating:
             outside=loads,
             notes=tuple(notes),
         )
-
-    def _weight(self, assembly: Assembly, system: System, point: OperatingPoint) -> np.ndarray:
-        """Return the load (N,) of weight on the coordinates of a system."""
-        scenes = [*assembly.scenes.values()]
-        if assembly.train.is_one_shaft:
-            return weight_alone(scenes[0], system, point.gravity)
-        return weight(system, point.gravity)
 
     def _loads(
         self, assembly: Assembly, point: OperatingPoint, forces: dict[str, float]

@@ -35,7 +35,6 @@ from solidgear.variants.sweep.shaft_numbers import (
     ANSWER,
     ASKED,
     columns_of,
-    mass_alone,
     numbers_of,
 )
 
@@ -106,7 +105,7 @@ class SceneTask(FileTask):
         if ANSWER in self.ask:
             out = self._settled(scene) if self.model is None else self._fixed(scene)
         else:
-            mass, bar = mass_alone(scene, self.model)
+            mass, bar = mass_of(scene)
             out = {"model": self.model, "mass": mass, "mass bar": bar}
             out |= {} if self.model is None else {BARS: without_bars(self.model)}
         return out | numbers_of(scene, self.ask, self.model, self.tolerance)
@@ -127,7 +126,7 @@ class SceneTask(FileTask):
             "model": f"{shaft.settled.rung}, {shaft.settled.setting}",
             "unknowns": shaft.settled.body.size,
             "mass": shaft.mass,
-            "mass bar": shaft.mass_bar and shaft.mass_bar * shaft.mass,
+            "mass bar": shaft.mass_bar,
         }
         for name in STATICS:
             out |= {str(name): shaft.values.get(name), f"{name} bar": shaft.bar(name)}
@@ -144,12 +143,12 @@ class SceneTask(FileTask):
         numbers = answer_of_body(
             body, as_supports(scene), [scene.port.name], self.n, ovalising=True
         )
-        mass, bar = mass_of(scene, body)
+        mass, bar = mass_of(scene)
         out: dict[str, Any] = {
             "model": self.model,
             "unknowns": body.size,
             "mass": mass,
-            "mass bar": bar and bar * mass,
+            "mass bar": bar,
             BARS: without_bars(self.model),
         }
         out |= {str(name): numbers.quantities.get(name) for name in STATICS}

@@ -7,8 +7,8 @@ from collections.abc import Sequence
 from typing import Any
 
 from solidgear.bearings.duty import LivesOverPoints
-from solidgear.core import Scene, SolidgearError, build
-from solidgear.guards.one_shaft import ROUNDING, mass_of, round_mass
+from solidgear.core import Scene, SolidgearError
+from solidgear.core.ladder import solid_of
 from solidgear.strength.acting import FEW
 from solidgear.strength.deflection.at_rest import Measured, deflections
 from solidgear.strength.load import AT_REST
@@ -16,7 +16,6 @@ from solidgear.strength.stress.at_rest import stress_at_rest
 from solidgear.strength.stress.notch_tables import not_rated
 from solidgear.strength.stress.rating import Rating
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.lives import lives_in
 from solidgear.trains.load.operation import Operating
@@ -77,23 +76,12 @@ def numbers_of(
     """
     out: dict[str, Any] = {}
     if DEFLECTION in ask:
-        out |= _deflection(scene, model or JUDGE, tolerance)
+        out |= _deflection(scene, model or solid_of(scene), tolerance)
     if BEARING in ask:
         out |= life_numbers(_lives(scene))
     if STRESS in ask:
-        out |= _stress(scene, model or JUDGE)
+        out |= _stress(scene, model or "")
     return out
-
-
-def mass_alone(scene: Scene, model: str | None) -> tuple[float, float | None]:
-    """Return the mass of a shaft without masses on it, kg, and its error bar: in closed form where
-    there is one, else that of a mesh.
-    """
-    if scene.body is None and not scene.features:
-        mass = round_mass(scene)
-        return mass, ROUNDING * mass
-    mass, bar = mass_of(scene, build(scene, model or JUDGE))
-    return mass, bar and bar * mass
 
 
 def _points(assembly: Assembly) -> tuple[OperatingPoint, ...]:

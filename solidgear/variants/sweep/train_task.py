@@ -15,6 +15,7 @@ from solidgear.core import (
     read_tolerance,
 )
 from solidgear.core.models.limits import number
+from solidgear.guards.one_shaft import mass_of
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
 from solidgear.teeth.study import touching
 from solidgear.trains.assembly.assembly import KEPT
@@ -38,7 +39,6 @@ from solidgear.variants.sweep.error_curves import over_torque
 from solidgear.variants.sweep.file_task import BARS, BOUND, FileTask, named_kinds
 from solidgear.variants.sweep.file_variants import tables_for_plan
 from solidgear.variants.sweep.life_numbers import life_columns, life_numbers
-from solidgear.variants.sweep.shaft_numbers import mass_alone
 from solidgear.variants.sweep.tooth_numbers import TOOTH_UNITS, TeethBench, of_mesh, tooth_numbers
 from solidgear.variants.sweep.train_variants import TrainVariants, train_variants
 
@@ -188,7 +188,7 @@ class TrainTask(FileTask):
     def numbers(self, index: int) -> dict[str, Any]:
         train = self.variants.variant(index)
         point = self.variants.operating_point(index, train)
-        masses = [mass_alone(shaft.scene, None)[0] for shaft in train.shafts.values()]
+        masses = [mass_of(shaft.scene)[0] for shaft in train.shafts.values()]
         numbers: dict[str, Any] = {BARS: self.without_bars, MASS: sum(masses)}
         if point is not None:
             train, at_rest = self._at_rest(index, train, point)
