@@ -205,7 +205,7 @@ def test_check_solves_nothing_and_says_what_it_takes(tmp_path, solving):
     assert assembly.contact.stiffness == pytest.approx(USUAL * 50e-3, rel=5e-3)  # of 206 to 207 GPa
     facts = " ".join(_facts(assembly, 4000.0))
     for words in (
-        "1e+09 N/m",
+        "1.002e+09 N/m",
         "20 N/(mm um)",
         "contact ratio 1.589",
         "assumed of the teeth: normal",

@@ -807,6 +807,14 @@ MUTATIONS = (
         "tests/test_teeth_contact.py::test_stiffness_by_the_norm_is_that_of_the_material",
     ),
     Mutation(
+        "a rim that is held at its bore",
+        "solidgear/teeth/train_teeth.py",
+        "TeethModel.compliance",
+        "bore is not None",
+        "False",
+        "tests/test_teeth_train.py::test_thinner_rims_are_softer",
+    ),
+    Mutation(
         "a floating sun goes where one of its planets pushes it",
         "solidgear/teeth/supports.py",
         "Carried._alike",

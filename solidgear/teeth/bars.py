@@ -1,8 +1,8 @@
 """Error bars of the contact of teeth: what its numbers move by with each part of the discretisation.
 
 Cells are made twice as large, readings go twice as deep, the face has half as many slices; plane slices
-are spread along the face over as much less and more as single wheels need.  The bar is the sum of what
-each moves a number by.  A coarser mesh moves numbers by more than the finer one is off, so that the sum
+are spread along the face over as much less and more as single wheels need; hollow wheels are made
+solid, as what stands beside the face may make them.  The bar is the sum of what each moves a number by.  A coarser mesh moves numbers by more than the finer one is off, so that the sum
 is wide rather than narrow.  It does not hold what a model leaves out: plane slices know no motion along
 the axis, which makes helical teeth and thin wheels stiff.
 """
@@ -45,14 +45,18 @@ def error_bars(
     """Return the error bars of the numbers of a solved contact, by name, SI."""
     numbers = numbers_of(contact)
     bars = dict.fromkeys(numbers, 0.0)
-    for moved in _moved(carried, mesh, model, numbers):
+    for moved in _moved(carried, mesh, model, contact, numbers):
         for name in bars:
             bars[name] += moved[name]
     return bars
 
 
 def _moved(
-    carried: Carried, mesh: Pair | PlanetMesh, model: TeethModel, numbers: dict[str, float]
+    carried: Carried,
+    mesh: Pair | PlanetMesh,
+    model: TeethModel,
+    contact: MeshContact,
+    numbers: dict[str, float],
 ) -> Iterator[dict[str, float]]:
     """Yield by how much numbers move with each part of the discretisation."""
 
@@ -68,6 +72,8 @@ def _moved(
     plane = TeethModel(slices=model.slices, positions=model.positions)
     usual = numbers if model == plane else solved(plane)
     yield distance(solved(replace(plane, slices=plane.slices // 2)), usual)
+    if any(contact.rims):
+        yield distance(solved(replace(plane, bores=False)), usual)
     if model.name == plane.name:
         both = [
             distance(solved(replace(model, spread=model.spread + off)), numbers)

@@ -33,6 +33,8 @@ ORDERS = 5
 #: normal modules that teeth may give way by: steel breaks at a thirtieth, soft plastics at a tenth;
 #: pressure between hard rolling bodies that stay elastic, N/m^2 (ISO 76, roller bearings)
 MOST_BENT, ELASTIC = 0.25, 4e9
+#: rim that is worth a sentence, modules: one of four is 7 % softer than a solid wheel, by plane strain
+THIN_RIM = 4.0
 #: share of the load on corners that is worth a sentence; load of a slice that is none, of the mean;
 #: face load factor from which an end that carries most is worth one
 CORNER, IDLE, EDGE = 0.02, 1e-3, 1.2
@@ -87,7 +89,7 @@ class SolvedMesh:
             raise SolidgearError(
                 f"teeth of the {self.name} would give way by {1e3 * given:.3g} mm under {self.cycle.force:.4g} "
                 f"N, {given / self.module:.2g} of their module of {in_mm(self.module)}: no teeth do so "
-                "and stay whole; correct the torque, the face width or the module"
+                "and stay whole; correct torque, face width, module or bore"
             )
         return self
 
@@ -181,6 +183,8 @@ class MeshContact(SolvedMesh):
 
     pair: CylindricalPair
     along: int  #: 1 where face places grow along y of the first wheel's scene, else -1
+    #: of both wheels from the bore to the roots, modules; None of solid ones and rings
+    rims: tuple[float | None, float | None]
 
     @property
     def teeth(self) -> ToothedPair:
@@ -211,6 +215,19 @@ class MeshContact(SolvedMesh):
     def module(self) -> float:
         """Normal module, m."""
         return self.wheels.first.module
+
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on what the numbers leave out."""
+        thin = [rim for rim in self.rims if rim is not None and rim < THIN_RIM]
+        if not thin:
+            return super().cautions
+        return (
+            *super().cautions,
+            f"{self.name}: a rim of {min(thin):.2g} modules below the roots softens the teeth; it is taken "
+            "as free at its bore, with nothing beside the face. What stands beside it makes the teeth "
+            "stiffer, at most as stiff as on a solid wheel: the error bar holds that",
+        )
 
     @property
     def line_load(self) -> float:

@@ -7,6 +7,7 @@ the load lies along the face, and for nothing else there.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
@@ -14,9 +15,10 @@ import numpy as np
 
 from solidgear.core import SceneError
 from solidgear.core.gears.wheel import Wheel
+from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
 from solidgear.teeth.compliance.flank import FlankCompliance
-from solidgear.teeth.compliance.plane import DEPTH, HUB, PlaneTeeth
+from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM, PlaneTeeth
 from solidgear.teeth.compliance.slices import SPREAD, Slices
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, harmonics, mesh_cycle
@@ -27,6 +29,7 @@ from solidgear.teeth.mesh_contact import ORDERS, MeshContact
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, with_usual_meshes
 from solidgear.trains.file.gears import Member
+from solidgear.trains.file.lengths import in_mm
 from solidgear.trains.file.mesh_cycle import StiffnessCycle
 from solidgear.trains.file.mesh_teeth import MeshTeeth, gears_of, material_of, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
@@ -38,8 +41,8 @@ from solidgear.trains.file.tooth_fit import parting_teeth
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of, other_flank
 
-#: bore below which a wheel is solid, of its root radius
-THINNEST = HUB
+#: bore below which a wheel is solid, of its root radius; least rim below the roots, modules
+SMALL_BORE, LEAST_RIM = HUB, 2 * PORT
 
 
 @dataclass(frozen=True)
@@ -58,6 +61,8 @@ class TeethModel:
         Depth of readings below the flank, modules.
     spread : float
         How far a slice moves others along the face, modules; of slices alone.
+    bores : bool
+        Whether rims end freely at the bores of hollow shafts; without, all wheels are solid.
 
     Examples
     --------
@@ -72,19 +77,23 @@ class TeethModel:
     coarse: bool = False
     depth: float = DEPTH
     spread: float = SPREAD
+    bores: bool = True
 
     def compliance(self, wheel: Wheel, body: WheelBody) -> FlankCompliance:
         """Return the compliance of a wheel's teeth."""
         depth = self.depth * wheel.module
+        bore = body.bore if self.bores else None
+        free = bore is not None
         if self.name == "slices":
-            plane = PlaneTeeth(wheel, hold=body.hold, elasticity=body.elasticity)
+            plane = PlaneTeeth(wheel, hold=bore, elasticity=body.elasticity, free=free)
             plane = plane.coarser if self.coarse else plane
             return Slices(plane, body.face_width, self.slices, depth, self.spread)
         solid = SolidTeeth(
             wheel,
-            hold=body.hold,
+            hold=bore,
             reading_depth=depth,
             elasticity=body.elasticity,
+            free=free,
             hand=body.hand,
             width=body.face_width,
             offset=body.offset,
@@ -98,9 +107,8 @@ class WheelBody:
     """What carries the teeth of a wheel, and the face that it shares."""
 
     elasticity: Elasticity
-    #: radius at which the body ends: its bore, or the seat of a wheel that is no part of its shaft, m;
-    #: None where it is solid
-    hold: float | None
+    #: radius of the bore of its shaft, m; None where it is solid
+    bore: float | None
     hand: int  #: as of :class:`solidgear.teeth.compliance.solid.SolidTeeth`
     face_width: float  #: shared, m
     offset: float  #: of its middle from that of the wheel's face, m
@@ -150,9 +158,31 @@ def wheel_bodies(mesh: Pair | PlanetMesh, teeth: MeshTeeth) -> tuple[WheelBody, 
         (wheels.first, wheels.second), gears_of(mesh), (1, -1), wheels.face_middles
     ):
         material = Elasticity() if gear is None else _elasticity(gear)
-        hold = None if gear is None else _hold(gear, wheel)
-        bodies.append(WheelBody(material, hold, hand, wheels.face_width, -middle))
+        bore = None if gear is None else _bore(gear, wheel)
+        bodies.append(WheelBody(material, bore, hand, wheels.face_width, -middle))
     return bodies[0], bodies[1]
+
+
+def rims_of(wheels: WheelPair, bodies: Sequence[WheelBody]) -> tuple[float | None, float | None]:
+    """Return how thick both wheels are from their bores to the roots of their teeth, modules; None of
+    solid ones and rings.
+    """
+    first, second = (
+        None if body.bore is None else (wheel.root - body.bore) / wheel.module
+        for wheel, body in zip((wheels.first, wheels.second), bodies)
+    )
+    return first, second
+
+
+def assumed_bodies(mesh: Pair | PlanetMesh) -> tuple[str, ...]:
+    """Return sentences on the bodies of wheels that the file does not describe."""
+    if isinstance(mesh, Pair):
+        heads = [side for side, gear in zip(mesh.shafts, gears_of(mesh)) if gear and gear.head]
+        return tuple(
+            f"wheel of the {side} of its shaft's material, solid to the shaft" for side in heads
+        )
+    ring = f"ring of steel, with a rim of {RIM:g} modules that is held around its outside"
+    return ("planets of steel, solid", *([ring] if mesh.mate == "ring" else []))
 
 
 def _elasticity(gear: Member) -> Elasticity:
@@ -160,17 +190,19 @@ def _elasticity(gear: Member) -> Elasticity:
     return Elasticity(material.E, material.nu)
 
 
-def _hold(gear: Member, wheel: Wheel) -> float | None:
-    """Return the radius at which the body of a wheel ends: its bore, the seat of a wheel that is no
-    part of its shaft, or none where it is solid.
+def _bore(gear: Member, wheel: Wheel) -> float | None:
+    """Return the radius of the bore of a gear's shaft, m, or none where it is solid: a wheel that is no
+    part of its shaft sits on it, and both carry the teeth together.
     """
-    scene = gear.scene
-    y = scene.port.y
-    radii = [segment.radius_at(y) for segment in scene.segments_at(y)]
-    inner, outer = (max(values) for values in zip(*radii))
-    radius = inner if gear.head is None else outer
-    deepest = wheel.root - 1.5 * wheel.module
-    return radius if THINNEST * wheel.root < radius < deepest else None
+    y = gear.scene.port.y
+    bore = max((segment.radius_at(y)[0] for segment in gear.scene.segments_at(y)), default=0.0)
+    if bore > wheel.root - LEAST_RIM * wheel.module:
+        raise SceneError(
+            f"leaves no rim: a bore of {in_mm(2 * bore)} at the gear, whose teeth have their roots at "
+            f"{in_mm(2 * wheel.root)} across; correct the bore, the teeth or their module",
+            path=("scene",),
+        )
+    return bore if bore > SMALL_BORE * wheel.root else None
 
 
 def mesh_contact(
@@ -181,7 +213,8 @@ def mesh_contact(
     """
     model = model or TeethModel()
     teeth = teeth_of(mesh, carried.coast(mesh))
-    wheels = teeth.wheels, model, wheel_bodies(mesh, teeth)
+    bodies = wheel_bodies(mesh, teeth)
+    wheels = teeth.wheels, model, bodies
     if wheels not in carried.pairs:
         carried.pairs[wheels] = toothed(mesh, teeth, model)
     contact = carried.pairs[wheels].with_shapes(teeth.shapes)
@@ -193,9 +226,10 @@ def mesh_contact(
         name=mesh.name,
         pair=contact,
         along=teeth.along[0],
+        rims=rims_of(teeth.wheels, bodies),
         supports=supports,
         cycle=mesh_cycle(contact, torque, base, model.slices, supports, model.positions),
-        assumed=teeth.assumed,
+        assumed=(*teeth.assumed, *assumed_bodies(mesh)),
     ).within_reach()
 
 
