@@ -12,8 +12,7 @@ import solidgear as sg
 from solidgear.core.gears.flank_shape import FlankShape, Relief
 from solidgear.core.gears.wheel import Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
-from solidgear.teeth.compliance.plane import PlaneTeeth
-from solidgear.teeth.compliance.slices import Slices
+from solidgear.teeth.compliance.slices import HelicalSlices
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import RigidSupports
 from solidgear.teeth.contact.local import Elasticity, LineContact
@@ -35,7 +34,7 @@ def teeth(helix):
         Wheel(57, 4e-3, radians(helix), face_width=FACE),
     )
     first, second = (
-        Slices(PlaneTeeth(wheel, hold=wheel.root - 16e-3), FACE, SLICES)
+        HelicalSlices.of(wheel, FACE, SLICES, bore=wheel.root - 16e-3)
         for wheel in (wheels.first, wheels.second)
     )
     return wheels, (first, second)

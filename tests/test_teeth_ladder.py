@@ -1,6 +1,7 @@
 """Models of the teeth side by side: which is enough for what, and how sure the finest is."""
 
 from dataclasses import replace
+from math import radians
 from pathlib import Path
 
 import numpy as np
@@ -8,13 +9,15 @@ import pytest
 
 import solidgear as sg
 from solidgear.core import WITHIN
-from solidgear.teeth.bars import error_bars, numbers_of
+from solidgear.core.gears.wheel import Wheel
+from solidgear.teeth.bars import _against_3d, error_bars, numbers_of
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.ladder import ERROR, FACE, NORM, SOLID, STIFFNESS, Solved, energy_share, ladder
 from solidgear.teeth.supports import Carried, with_sections
 from solidgear.teeth.train_teeth import TeethModel, mesh_contact, teeth_of, toothed
 from solidgear.trains.assembly.assembly import Assembly
+from validation.helical_slices import cycle
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 QUICK = TeethModel(slices=12, positions=8)
@@ -90,19 +93,21 @@ def test_what_is_within_the_tolerance_with_its_bar_is_enough(by_slices):
 
 
 @pytest.mark.slow
-def test_plane_slices_of_helical_teeth_are_stiffer_than_teeth_in_3d(carried):
-    """By more than the bar: the axial part of their force bends a wheel that is a disc of 12 mm out of
-    its plane, which a plane section does not know.
-    """
+def test_slices_of_helical_teeth_on_a_disc_are_those_of_teeth_in_3d(carried):
+    """Within the bar, although the axial part of their force bends a wheel of 12 mm out of its plane."""
     found = ladder(carried, carried.train.pairs[0], 0.02)
     norm, slices, solid = found.rungs
     assert solid.model == SOLID
     ratio = slices.numbers.tangent / solid.numbers.tangent
-    assert 1.2 < ratio < 1.8
+    assert 0.95 < ratio < 1.25
     assert slices.off[STIFFNESS] == pytest.approx((ratio - 1) * found.share / 2, rel=1e-12)
     assert found.bars[STIFFNESS] < 0.06 * found.share / 2
     data = found.as_dict()
     assert [*data["models"]] == ["ISO 6336-1", "slices", "solid"]
+
+
+def finer_plane(plane):
+    return replace(plane, fineness=plane.fineness.finer(2))
 
 
 def test_error_bars_hold_against_finer_slices_and_cells(carried):
@@ -116,7 +121,7 @@ def test_error_bars_hold_against_finer_slices_and_cells(carried):
     finer = replace(
         finer,
         compliances=tuple(
-            replace(c, plane=replace(c.plane, fineness=c.plane.fineness.finer(2)))
+            replace(c, slices=replace(c.slices, plane=finer_plane(c.slices.plane)))
             for c in finer.compliances
         ),
     )
@@ -127,7 +132,42 @@ def test_error_bars_hold_against_finer_slices_and_cells(carried):
     found = numbers_of(replace(contact, pair=finer, cycle=cycle))
     for name in ("tangent", "secant", "peak_to_peak", "order 1", "order 2"):
         assert abs(found[name] - numbers[name]) <= bars[name], name
-        assert bars[name] < 0.25 * abs(numbers[name]) + 5e-9, name
+        # a third of it is what a shaft beside so narrow a wheel may do
+        assert bars[name] < 0.5 * abs(numbers[name]) + 5e-9, name
+
+
+#: tangent stiffness, N/um, and face load factor of teeth in 3D by helix angle, deg, and face, mm
+#: (``validation/helical_slices.py``)
+IN_3D = {
+    (0, 25): (580.5, 1.019),
+    (5, 25): (569.0, 1.035),
+    (15, 25): (539.8, 1.024),
+    (20, 10): (127.5, 1.086),
+    (20, 25): (514.1, 1.058),
+    (20, 50): (1159, 1.030),
+    (30, 12): (116.5, 1.125),
+    (30, 25): (441.4, 1.096),
+    (30, 50): (1125, 1.066),
+}
+
+
+@pytest.mark.parametrize("helix, width", IN_3D)
+def test_slices_are_off_teeth_in_3d_by_less_than_their_bar(helix, width):
+    """Within 13 % on faces of ten modules and more; on narrow discs 24 %, which bend out of their plane
+    further than a thin plate does, less than a disc that is kept flat is off.
+    """
+    stiffness, factor = IN_3D[helix, width]
+    slices = cycle(TeethModel("slices", 16, 8), helix, width)
+    flat = cycle(TeethModel("slices", 16, 8, beside=True), helix, width)
+    tangent = float(slices.tangent.mean()) / 1e6
+    beside = float(flat.tangent.mean()) / 1e6 - tangent
+    left = _against_3d(
+        Wheel(29, 2.5e-3, radians(helix)).base_helix,
+        {"tangent": tangent, "face_load_factor": slices.face_load_factor},
+    )
+    assert 0 < tangent - stiffness < left["tangent"] + beside
+    assert tangent / stiffness - 1 < (0.13 if width >= 25 else 0.24)
+    assert abs(slices.face_load_factor - factor) < left["face_load_factor"] + 0.025
 
 
 @pytest.mark.slow

@@ -19,7 +19,7 @@ from solidgear.core.kernel.assembly import tabulate
 from solidgear.teeth.compliance.mesh import Fineness, pitch_mesh
 from solidgear.teeth.compliance.pitch import plane_pitch
 from solidgear.teeth.compliance.plane import PlaneTeeth
-from solidgear.teeth.compliance.slices import Slices
+from solidgear.teeth.compliance.slices import HelicalSlices, Slices, normal_section
 from solidgear.teeth.contact.local import Elasticity, LineContact
 
 PINION, WHEEL, RING = Wheel(23, 4e-3), Wheel(57, 4e-3), Wheel(-60, 2e-3)
@@ -388,22 +388,63 @@ def test_an_even_load_stays_even_for_any_number_of_slices(count, width):
     assert spread == pytest.approx(spread.T, rel=1e-14)
 
 
-def test_slices_of_helical_teeth_move_along_the_normal():
-    wheel = Wheel(30, 2e-3, radians(20), face_width=15e-3)
+def test_slices_have_what_is_near_within_them_and_spread_the_rest():
+    wheel = Wheel(30, 2e-3, face_width=15e-3)
     slices = Slices(PlaneTeeth(wheel, fineness=COARSE), 15e-3, 5, reading_depth=1e-3)
-    tooth, r = np.array([0, 0, 1, -1, 1]), np.array([31.0, 32.0, 31.5, 33.0, 33.9]) * 1e-3
+    tooth, r = np.array([0, 0, 1, -1, 1]), np.array([29.0, 30.0, 29.5, 31.0, 31.9]) * 1e-3
     r = np.clip(r, wheel.form, wheel.tip)
     matrix = slices.matrix(tooth, r, slices.middles)
     across, near = (f(tooth, r, 1e-3) for f in (slices.plane.matrix, slices.plane.near))
     expected = near * np.eye(5) / slices.step + (across - near) * slices.along(slices.middles)
-    assert matrix == pytest.approx(np.cos(wheel.base_helix) ** 2 * expected, rel=1e-12)
+    assert matrix == pytest.approx(expected, rel=1e-12)
     assert np.linalg.eigvalsh(matrix).min() > 0
     # what is near stays in the slice: half of it where slices overlap by half
     z, same = np.array([1.5, 1.5, 3.0, 4.5, 1.5]) * 1e-3, np.zeros(5, int)
-    again = slices.matrix(same, r, z) / np.cos(wheel.base_helix) ** 2
+    again = slices.matrix(same, r, z)
     across, near = (f(same, r, 1e-3) for f in (slices.plane.matrix, slices.plane.near))
     rest = (again - (across - near) * slices.along(z)) * slices.step
     assert rest[0, 1:] == pytest.approx(near[0, 1:] * [1.0, 0.5, 0.0, 1.0], rel=1e-10, abs=1e-24)
+
+
+def test_slices_of_helical_teeth_are_those_of_their_normal_section():
+    """Straight teeth are their own; helical ones have the normal tooth of more teeth, along them."""
+    wheel = Wheel(30, 2e-3, radians(20), 0.3, tip_radius=34.7e-3, face_width=15e-3)
+    spur = normal_section(wheel)
+    assert spur.teeth == round(30 / (np.cos(wheel.base_helix) ** 2 * np.cos(radians(20))))
+    assert spur.tip - spur.root == pytest.approx(wheel.tip - wheel.root, rel=1e-12)
+    straight = Wheel(30, 2e-3, face_width=15e-3)
+    assert normal_section(straight) == straight
+    flat = HelicalSlices.of(wheel, 15e-3, 5, disc=False)
+    even = flat.matrix(np.zeros(5, int), np.full(5, wheel.radius), np.linspace(-6e-3, 6e-3, 5))
+    plane = PlaneTeeth(spur).matrix(np.array([0]), np.array([spur.radius]), 0.5e-3).item()
+    # an even load of 1 N/m along the teeth moves all of them alike
+    assert even.sum(axis=1) * 3e-3 / np.cos(radians(20)) == pytest.approx(plane, rel=1e-9)
+
+
+def test_a_disc_bends_out_of_its_plane_as_a_plate_with_a_free_edge():
+    """Rayleigh: under an axial force on the edge, with rigid motions fixed, polynomials r^n and r^(n + 2)
+    of every wave give the work of the force; the sum of waves again by the energy of the plate.
+    """
+    wheel = Wheel(60, 2e-3, radians(20), face_width=6e-3)
+    teeth = HelicalSlices.of(wheel, 6e-3, 4)
+    nu, stiff = 0.3, 2.06e11 * 6e-3**3 / 12 / (1 - 0.3**2)
+    r = (np.polynomial.legendre.leggauss(40)[0] + 1) / 2
+    weights = np.polynomial.legendre.leggauss(40)[1] / 2
+    total = 0.0
+    for n in range(2, 30):
+        shapes = []
+        for p in (n, n + 2):
+            bent, slope, shape = p * (p - 1) * r ** (p - 2), p * r ** (p - 1), r**p
+            around = slope / r - n**2 * shape / r**2
+            twist = n * (slope / r - shape / r**2)
+            shapes.append((bent, around, twist))
+        energy = np.empty((2, 2))
+        for i, (b1, a1, t1) in enumerate(shapes):
+            for j, (b2, a2, t2) in enumerate(shapes):
+                density = b1 * b2 + a1 * a2 + nu * (b1 * a2 + a1 * b2) + 2 * (1 - nu) * t1 * t2
+                energy[i, j] = pi * stiff * (weights * r) @ density
+        total += np.ones(2) @ np.linalg.solve(energy, np.ones(2)) * wheel.radius**2
+    assert teeth.out_of_plane(np.array(0.0)) == pytest.approx(total, rel=1e-6)
 
 
 def test_faces_that_have_no_slices_are_refused():

@@ -7,11 +7,10 @@ from collections.abc import Iterable
 from solidgear.core import SolidgearError
 from solidgear.core.gears.flank_shape import FlankShape
 from solidgear.core.gears.wheel_pair import WheelPair
-from solidgear.teeth.compliance.plane import PlaneTeeth
-from solidgear.teeth.compliance.slices import Slices
+from solidgear.teeth.compliance.slices import HelicalSlices
 from solidgear.teeth.contact.cycle import MeshCycle, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
-from solidgear.teeth.contact.local import LineContact
+from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.trains.file.flanks import ReliefTable
 from solidgear.trains.file.mesh_teeth import reliefs
 from solidgear.trains.file.tip_rules import cut_caution, is_cutting
@@ -63,9 +62,8 @@ def pair_contact(
         if is_cutting(wheels, k):
             raise SolidgearError(cut_caution(wheels, k, ("first wheel", "second wheel")))
     face, base = min(first.face_width, second.face_width), first.base
-    teeth = Slices(PlaneTeeth(first), face, slices), Slices(PlaneTeeth(second), face, slices)
-    steel = teeth[0].plane.elasticity, teeth[1].plane.elasticity
-    law = LineContact(steel, (teeth[0].depth, teeth[1].depth))
+    teeth = HelicalSlices.of(first, face, slices), HelicalSlices.of(second, face, slices)
+    law = LineContact((Elasticity(), Elasticity()), (teeth[0].depth, teeth[1].depth))
     begin = reliefs(wheels, 0, ReliefTable(tip=tip))[0], reliefs(wheels, 1, ReliefTable(tip=tip))[0]
     shapes = FlankShape(face_width=face, tip=begin[0]), FlankShape(face_width=face, tip=begin[1])
     pair = CylindricalPair(wheels, teeth, law, shapes, slices=slices)

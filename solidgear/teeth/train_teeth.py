@@ -18,8 +18,8 @@ from solidgear.core.gears.wheel import Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.teeth.bevel.train import BevelContact, bevel_contact
 from solidgear.teeth.compliance.flank import FlankCompliance
-from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM, PlaneTeeth
-from solidgear.teeth.compliance.slices import SPREAD, Slices
+from solidgear.teeth.compliance.plane import DEPTH, HUB, PORT, RIM
+from solidgear.teeth.compliance.slices import SPREAD, HelicalSlices
 from solidgear.teeth.compliance.solid import SolidTeeth
 from solidgear.teeth.contact.cycle import POSITIONS, harmonics, mesh_cycle
 from solidgear.teeth.contact.cylindrical import CylindricalPair
@@ -31,7 +31,7 @@ from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, with_usual_
 from solidgear.trains.file.gears import Member
 from solidgear.trains.file.lengths import in_mm
 from solidgear.trains.file.mesh_cycle import StiffnessCycle
-from solidgear.trains.file.mesh_teeth import MeshTeeth, gears_of, material_of, wheels_of
+from solidgear.trains.file.mesh_teeth import MeshTeeth, elasticity_of, gears_of, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
@@ -61,8 +61,9 @@ class TeethModel:
         Depth of readings below the flank, modules.
     spread : float
         How far a slice moves others along the face, modules; of slices alone.
-    bores : bool
-        Whether rims end freely at the bores of hollow shafts; without, all wheels are solid.
+    beside : bool
+        Whether wheels are as stiff as a thick shaft beside the face makes them: solid whatever their
+        bore, and not bent out of their plane.
 
     Examples
     --------
@@ -77,23 +78,30 @@ class TeethModel:
     coarse: bool = False
     depth: float = DEPTH
     spread: float = SPREAD
-    bores: bool = True
+    beside: bool = False
 
     def compliance(self, wheel: Wheel, body: WheelBody) -> FlankCompliance:
         """Return the compliance of a wheel's teeth."""
         depth = self.depth * wheel.module
-        bore = body.bore if self.bores else None
-        free = bore is not None
+        bore = None if self.beside else body.bore
         if self.name == "slices":
-            plane = PlaneTeeth(wheel, hold=bore, elasticity=body.elasticity, free=free)
-            plane = plane.coarser if self.coarse else plane
-            return Slices(plane, body.face_width, self.slices, depth, self.spread)
+            return HelicalSlices.of(
+                wheel,
+                body.face_width,
+                self.slices,
+                bore,
+                body.elasticity,
+                self.coarse,
+                depth,
+                self.spread,
+                disc=not self.beside,
+            )
         solid = SolidTeeth(
             wheel,
             hold=bore,
             reading_depth=depth,
             elasticity=body.elasticity,
-            free=free,
+            free=bore is not None,
             hand=body.hand,
             width=body.face_width,
             offset=body.offset,
@@ -186,8 +194,7 @@ def assumed_bodies(mesh: Pair | PlanetMesh) -> tuple[str, ...]:
 
 
 def _elasticity(gear: Member) -> Elasticity:
-    material = material_of(gear)
-    return Elasticity(material.E, material.nu)
+    return Elasticity(*elasticity_of(gear))
 
 
 def _bore(gear: Member, wheel: Wheel) -> float | None:
