@@ -25,11 +25,11 @@ import scipy.linalg as sla
 
 from solidgear.core import Scene, SolidgearError, System
 from solidgear.core.scene.stations import Port
-from solidgear.core.system.links import RowSpring
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Frame, Stations, Supports
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_place import MeshPlace, place_of
+from solidgear.trains.assembly.stages import mesh_rows
 from solidgear.trains.file.mesh_teeth import MeshTeeth, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
@@ -129,11 +129,8 @@ class Carried:
         """Return the (s, N) stretches of the springs that the teeth of a mesh are in the state, and
         their (s,) forces, N.
         """
-        system = self.state.system
-        spring = system.links[place.link]
-        assert isinstance(spring, RowSpring)
-        rows = spring.stretch(*map(system.port, spring.ends))
-        return rows, -spring.stiffness * (rows @ self.state.coordinates)
+        rows, stiffness = mesh_rows(self.state.system, place.link)
+        return rows, -stiffness * (rows @ self.state.coordinates)
 
     def supports(self, mesh: Pair | PlanetMesh, place: MeshPlace, frame: Frame) -> Supports:
         """Return what carries both wheels of a mesh, with its place and frame."""

@@ -33,7 +33,7 @@ from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.gears import Member
 from solidgear.trains.file.lengths import in_mm
 from solidgear.trains.file.mesh_cycle import StiffnessCycle
-from solidgear.trains.file.mesh_teeth import MeshTeeth, gears_of, material_of, wheels_of
+from solidgear.trains.file.mesh_teeth import MeshTeeth, elasticity_of, gears_of, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
@@ -197,8 +197,7 @@ def assumed_bodies(mesh: Pair | PlanetMesh) -> tuple[str, ...]:
 
 
 def _elasticity(gear: Member) -> Elasticity:
-    material = material_of(gear)
-    return Elasticity(material.E, material.nu)
+    return Elasticity(*elasticity_of(gear))
 
 
 def _bore(gear: Member, wheel: Wheel) -> float | None:

@@ -170,7 +170,7 @@ class HelicalSlices:
     >>> teeth = HelicalSlices.of(wheel, face_width=25e-3, slices=10)
     >>> even = teeth.matrix(np.zeros(10, int), np.full(10, wheel.radius), teeth.slices.middles)
     >>> print(f"{even.sum(axis=1)[4] * 2.5e-3:.2g} m per N/m")
-    2.4e-11 m per N/m
+    2.5e-11 m per N/m
     """
 
     wheel: Wheel

@@ -188,10 +188,15 @@ def mesh_row(system: System, name: str) -> tuple[np.ndarray, float]:
     """Return the row (N,) that gives the stretch of a mesh, m, the mean over the face, and the
     stiffness, N/m.
     """
+    rows, stiffness = mesh_rows(system, name)
+    return rows.mean(axis=0), len(rows) * stiffness
+
+
+def mesh_rows(system: System, name: str) -> tuple[np.ndarray, float]:
+    """Return the (s, N) stretches of the springs that a mesh is, and the stiffness of each, N/m."""
     spring = system.links[name]
     assert isinstance(spring, RowSpring)
-    rows = spring.stretch(*map(system.port, spring.ends))
-    return rows.mean(axis=0), len(rows) * spring.stiffness
+    return spring.stretch(*map(system.port, spring.ends)), spring.stiffness
 
 
 def with_mesh_stiffness(system: System, stiffness: Mapping[str, float]) -> System:

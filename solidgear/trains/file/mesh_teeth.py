@@ -15,7 +15,6 @@ from solidgear.core.gears.flank_shape import FlankShape, Relief
 from solidgear.core.gears.norm import STEEL
 from solidgear.core.gears.wheel import Rack, Wheel
 from solidgear.core.gears.wheel_pair import WheelPair
-from solidgear.core.scene.parts import Material
 from solidgear.trains.file.cylindrical import first_given
 from solidgear.trains.file.flanks import Flanks, RackTable, ReliefTable, roll_length
 from solidgear.trains.file.gears import FLANKS, Gear, Member
@@ -95,15 +94,18 @@ def gears_of(mesh: Pair | PlanetMesh) -> tuple[Member | None, Member | None]:
     return (mesh.stage.sun if mesh.mate == "sun" else None), None
 
 
-def material_of(gear: Member) -> Material:
-    """Return the material of a gear: that of its shaft where it sits."""
+def elasticity_of(gear: Member) -> tuple[float, float]:
+    """Return modulus of elasticity, N/m^2, and Poisson's ratio of a gear: those of its shaft where it
+    sits.
+    """
     segments = gear.scene.segments_at(gear.scene.port.y)
-    return segments[0].material if segments else gear.scene.material
+    material = segments[0].material if segments else gear.scene.material
+    return material.E, material.nu
 
 
 def moduli_of(mesh: Pair | PlanetMesh) -> tuple[float, float]:
     """Return the moduli of elasticity of both wheels, N/m^2; planets and rings are of steel."""
-    first, second = (STEEL if gear is None else material_of(gear).E for gear in gears_of(mesh))
+    first, second = (STEEL if gear is None else elasticity_of(gear)[0] for gear in gears_of(mesh))
     return first, second
 
 
