@@ -202,7 +202,9 @@ def test_what_holds_a_bar_back_is_named(two_meshes):
     found = answer(sg.Scene.from_parts(parts, port=port, bearings=[held]), 1e-8, "C_zz")
     assert not found.reached
     why = found.steps[-1].why
-    assert found.bar > 1e-8 and found.steps[-1].chosen and why.startswith("2 meshes were too coarse")
+    assert (
+        found.bar > 1e-8 and found.steps[-1].chosen and why.startswith("2 meshes were too coarse")
+    )
     assert why.endswith("most of the error bar comes from the shoulder at y = 60 mm, r = 20 mm")
 
 
