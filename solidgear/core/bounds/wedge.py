@@ -61,7 +61,7 @@ def _exponent(wedges: tuple[tuple[float, float, float], ...], held: int) -> floa
     return float(min(*np.concatenate(roots), 1.0))
 
 
-def _exponents(matrices: Sequence[np.ndarray], count: int, held: int) -> np.ndarray:
+def _exponents(matrices: _Matrices, count: int, held: int) -> np.ndarray:
     """Return the real parts of the exponents above zero, of displacements of `count` components.
 
     Roots come in pairs of either sign. Where nothing is held, translations and their logarithms are
@@ -73,6 +73,8 @@ def _exponents(matrices: Sequence[np.ndarray], count: int, held: int) -> np.ndar
     return roots.real[roots.real > 0]
 
 
+#: M, C and K
+_Matrices = tuple[np.ndarray, np.ndarray, np.ndarray]
 #: elasticity, and the strains of functions that do and that do not grow with the exponent: of value
 #: and slope along the angle, (strain, component) each
 _Law = tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]
@@ -99,9 +101,7 @@ def _across(e: float, nu: float) -> _Law:
 LAWS: tuple[tuple[Callable[[float, float], _Law], int], ...] = ((_plane, 2), (_across, 1))
 
 
-def _matrices(
-    wedges: Iterable[tuple[float, _Law]], components: int
-) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+def _matrices(wedges: Iterable[tuple[float, _Law]], components: int) -> _Matrices:
     """Return M, C and K of wedges, unknowns by places along the angle."""
     wedges = list(wedges)
     size = components * (ORDER * len(wedges) + 1)

@@ -60,8 +60,8 @@ class CellPlaces:
         if hasattr(geometry, "meridian"):
             meridian = geometry.meridian
             points = np.vstack([meridian.points, 0 * meridian.points[0]])
-            places = singular_places(scene, attached_stations(scene.stations, attachments))
-            return cls(places, points, meridian.cells, True, True)
+            around = singular_places(scene, attached_stations(scene.stations, attachments))
+            return cls(around, points, meridian.cells, True, True)
         mesh = geometry.solved.mesh
         places = solid_places(scene, body, attachments)
         return cls(places, mesh.p, mesh.t, False, not without_axis(scene))
