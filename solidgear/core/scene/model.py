@@ -204,9 +204,8 @@ class Scene(Displayed, Model):
     def _place(self) -> None:
         """Put things made by words of a file on the shaft, bearings first, which others refer to."""
         kinds = ("bearings", "masses", "loads", "features", "blends", "further_ports")
-        things: dict[str, Any] = {
-            key: getattr(self, key) for key in (*kinds, "main_port", "housing")
-        }
+        names = (*kinds, "main_port", "housing")
+        things: dict[str, Any] = {key: getattr(self, key) for key in names}
         things = {key: value for key, value in things.items() if value is not None}
         if all(t.words is None for value in things.values() for t in _several(value)):
             return

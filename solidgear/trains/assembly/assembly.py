@@ -575,13 +575,9 @@ class Assembly:
             points = [*self.train.shafts[side].gears] or [scene.port.name]
             part = lumped(source, kind, scene, points)
         seconds = source.seconds + perf_counter() - start
+        unknowns = source.unknowns
         return ShaftModel(
-            side=side,
-            model=model,
-            part=part,
-            body=source.body,
-            unknowns=source.unknowns,
-            seconds=seconds,
+            side=side, model=model, part=part, body=source.body, unknowns=unknowns, seconds=seconds
         )
 
     def system(self, *models: str, bearings: bool = True) -> System:

@@ -25,7 +25,6 @@ import numpy as np
 from solidgear.core import LADDER, SolidgearError, System, as_supports, coned, pinned
 from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, why_unbounded, with_tail
 from solidgear.core.bounds.safety import LOCAL
-from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import bounds_of, geometry_share
 from solidgear.core.solve.statics import flexibility
 from solidgear.core.system.system import port_forces
@@ -66,7 +65,7 @@ class StaticErrors:
         )
         if model == JUDGE:
             if reason := why_unbounded(coned(scene), body):
-                raise NoBounds(reason)
+                raise SolidgearError(reason)
             return pinned(harmonic_bounds)(coned(scene), body, statics=True)
         # the flexibility of a free body knows no bearings
         free = as_supports(())
