@@ -195,3 +195,10 @@ def test_a_material_by_name_is_its_numbers(tmp_path):
     words = sg.sweep(named, "material=42CrMo4,aluminium", **BEAM)
     assert words["material"].tolist() == ["42CrMo4", "aluminium"]
     assert words["f1_hz"][0] == rows["f1_hz"][0]
+
+
+def test_a_free_shaft_has_frequencies_and_no_compliances():
+    swept = sg.sweep("geometry/cylinder_free.toml", "segment.rod.length=300 mm", tolerance=0.1, n=1)
+    (row,) = swept.rows
+    assert row["status"] == "ok" and row["mode1"] == "bending 1" and row["f1_hz bar"] > 0
+    assert row["C_zz"] is None and row["C_zz bar"] is None

@@ -51,7 +51,11 @@ class OneShaft(Side):
         return self.scene.title or self.scene.name
 
     def bar(self, name: Quantity) -> float | None:
-        """Return the error bar of a quantity in its unit; None where nothing is known."""
+        """Return the error bar of a quantity in its unit; None where nothing is known, as of a free
+        motion.
+        """
+        if name not in self.values:
+            return None
         width = self.settled.bars.get(name, math.inf) * size(self.values, name)
         return width if math.isfinite(width) else None
 

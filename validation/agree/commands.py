@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 from typer.testing import CliRunner
 
+from solidgear import SolidgearError
 from solidgear.app import app
 from solidgear.core.frames import DOF_NAMES
 from solidgear.core.quantity import Quantity
@@ -52,9 +53,12 @@ def run(*words: Any) -> Printed:
     """Run a command with `--json`."""
     result = CliRunner().invoke(app, [*map(str, words), "--json"])
     lines = [line for line in result.stdout.splitlines() if line.startswith("{")]
-    crash = result.exception
-    told = "" if crash is None or isinstance(crash, SystemExit) else repr(crash)
-    return Printed(result.exit_code, json.loads(lines[-1]) if lines else {}, result.stderr, told)
+    data = json.loads(lines[-1]) if lines else {}
+    ended = result.exception
+    if isinstance(ended, SolidgearError):
+        return Printed(result.exit_code, data, f"{result.stderr}\n{ended}", "")
+    crash = "" if ended is None or isinstance(ended, SystemExit) else repr(ended)
+    return Printed(result.exit_code, data, result.stderr, crash)
 
 
 def by_answer(scene: Path, *words: Any) -> Numbers:

@@ -221,7 +221,7 @@ def of_scene(scene: Path, tol: float | None = None) -> Iterator[Relation]:
     """Numbers of a shaft and of every other description of it."""
     loaded = sg.load(scene)
     tables = loaded.to_dict()
-    if any(bearing.matrix is None for bearing in loaded.bearings):
+    if any(bearing.catalogue is not None for bearing in loaded.bearings):
         return
     for table, bearing in zip(tables.get("bearing", []), loaded.bearings):
         table["matrix6"] = np.asarray(bearing.stiffness).tolist()
@@ -245,7 +245,7 @@ def of_scene(scene: Path, tol: float | None = None) -> Iterator[Relation]:
 def _load_in_two(scene: Path) -> Iterator[Relation]:
     """Motions of the main point under a load, and under its halves at the same place."""
     loaded = sg.load(scene)
-    if loaded.is_loaded or loaded.features or loaded.body is not None:
+    if loaded.is_loaded or loaded.features or loaded.body is not None or not loaded.bearings:
         return
     tables = loaded.to_dict()
     half = {"on": loaded.port.name, "z": 500.0, "x": 250.0}
@@ -288,7 +288,7 @@ def of_train(train: Path) -> Iterator[Relation]:
     if (
         len(tables["shaft"]) != 2
         or tables["mesh"][0].get("shaft_angle") != 0.0
-        or any(bearing.matrix is None for bearing in bearings)
+        or any(bearing.catalogue is not None for bearing in bearings)
     ):
         return
     turned = copy.deepcopy(tables)

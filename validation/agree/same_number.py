@@ -66,7 +66,7 @@ def _static(numbers: Numbers) -> Numbers:
 def _is_plain(scene: Path) -> bool:
     """Whether bearings have the same stiffness under any load."""
     loaded = sg.load(scene)
-    return not loaded.is_loaded and all(bearing.matrix is not None for bearing in loaded.bearings)
+    return not loaded.is_loaded and all(bearing.catalogue is None for bearing in loaded.bearings)
 
 
 def in_python(scene: Path) -> Iterator[Relation]:
