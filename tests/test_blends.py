@@ -310,20 +310,18 @@ def test_what_is_singular_knows_fillets():
         scene = stepped(*blends)
         options = {"order": 3, "layers": 0, "edge_layers": 0, "families": ("torsion",)}
         body = sg.build(scene, "harmonic", **options)
-        found = richer_space(coned(scene), body).corners
-        points = body.geometry.meridian.points
+        places = richer_space(coned(scene), body).corners.values()
         return sorted(
-            (round(float(points[1, v]), 9), round(float(points[0, v]), 9), round(float(angle), 3))
-            for v, (kind, angle) in found.items()
-            if kind == "re-entrant"
+            (round(place.y, 9), round(place.r, 9), round(place.exponent, 3))
+            for place in places
+            if place.what.startswith(("shoulder", "chamfer"))
         )
 
-    # at right angles and at half of them beyond a straight one
-    right, half = round(1.5 * np.pi, 3), round(1.25 * np.pi, 3)
-    assert corners() == [(0.068, 0.045, right)]
+    # at right angles and at half of them beyond a straight one (Williams 1952)
+    assert corners() == [(0.068, 0.045, 0.544)]
     assert corners(root(0.004)) == []
     chamfer = Chamfer(name="c", y=0.068, length=0.004)
-    assert corners(chamfer) == [(0.068, 0.049, half), (0.072, 0.045, half)]
+    assert corners(chamfer) == [(0.068, 0.049, 0.674), (0.072, 0.045, 0.674)]
 
 
 @pytest.mark.parametrize(

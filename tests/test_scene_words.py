@@ -6,7 +6,6 @@ import tomllib
 import pytest
 
 import solidgear as sg
-from solidgear.core.errors import SceneError
 from solidgear.core.scene import Chamfer
 
 FILE = """
@@ -54,21 +53,6 @@ def parts():
         "further_ports": [sg.Port(name="hub", **hub)],
         "load": {"z": "2 kN"},
     }
-
-
-def test_the_lines_that_a_file_lacks_can_be_pasted_between_any_tables():
-    """An inline table would belong to the table before it."""
-    tables = FILE.replace("port = [", "unused = [").partition("unused = [")[0]
-    lacking = tables + "[load]\nz = 2000.0\n[ask]\ntolerance = 0.1\n"
-    with pytest.raises(SceneError) as caught:
-        sg.load(tomllib.loads(lacking))
-    lines = caught.value.lacking.replace("SEGMENT", "middle")
-    assert str(caught.value).endswith(caught.value.lacking)
-    for place in ("[load]", "[ask]", "end"):
-        pasted = (
-            f"{lacking}{lines}\n" if place == "end" else lacking.replace(place, f"{lines}\n{place}")
-        )
-        assert sg.load(tomllib.loads(pasted)).port.name == "gear"
 
 
 def test_words_of_a_file_make_the_same_scene_in_python():
