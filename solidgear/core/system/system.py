@@ -432,6 +432,8 @@ def frequency_bound(
     """
     if np.isinf(truncation.cut):
         return np.zeros(n)
+    if truncation.cut == 0:
+        return np.full(n, np.inf)
     theta, limit = 1 / omega**2, 1 / truncation.cut
     weighted = shapes / omega
     excess = weighted.T @ truncation.defect @ weighted

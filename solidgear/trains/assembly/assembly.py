@@ -102,7 +102,7 @@ class Assembly:
 
     train: Train
     reduction: str = "rubin"
-    kept: int = KEPT  #: modes of each shaft
+    kept: int = KEPT  #: modes of each shaft; with none it is exact at rest, and solves no modes
     #: builder options of models, by their names; of one shaft by (side, model), before those
     settings: Mapping[str | tuple[str, str], Mapping] = field(default_factory=dict)
     #: relative error that the meshes of harmonic shafts may leave; by default the tolerance of the
@@ -248,6 +248,8 @@ class Assembly:
             earlier = before.seconds
             before.body.cache.clear()  # its factor need not be held beside the next one
         options = self.options_of(side, model) if mesh is None else mesh.options()
+        if self.kept == 0:
+            options = {**options, **LADDER[model].at_rest}
         shaft = self._reduce(
             side, model, build(self.meshed_scene(side, model), model, **options), start
         )
