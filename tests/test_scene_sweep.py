@@ -7,6 +7,8 @@ import math
 import pytest
 
 import solidgear as sg
+from solidgear.core.bounds import harmonic
+from solidgear.core.bounds.patches import local_energies
 from solidgear.variants.sweep.bearing_variants import bearing_variants
 from tests.command import command, table
 
@@ -32,6 +34,19 @@ def test_a_row_is_what_the_file_changed_by_hand_gives(tmp_path):
     statics = sg.condense(body, scene, scene.port.name)
     assert rows["C_zz"][1] == pytest.approx(statics.compliance[2, 2], rel=1e-12)
     assert rows["f1_hz"][1] == pytest.approx(sg.modes(body, scene, n=2).frequency_hz[-2], rel=1e-9)
+
+
+def test_local_problems_of_a_row_are_solved_once(monkeypatch):
+    solved = []
+
+    def counted(space, block, loading):
+        solved.append(block.name)
+        return local_energies(space, block, loading)
+
+    monkeypatch.setattr(harmonic, "local_energies", counted)
+    sg.sweep(SHAFT, "bearing.A.seat_width=20 mm", tolerance=0.1, n=2)
+    # those of the mesh, and of the modes of the row with them
+    assert len(solved) == len({*solved}) == 3
 
 
 @pytest.mark.slow
