@@ -95,7 +95,8 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
     if n < 0 or steps < 0:
         raise SolidgearError(f"rubin: n = {n} modes and {steps} steps; neither may be negative")
     chosen = chosen_ports(body, ports)
-    shapes, cut = [], 0.0
+    shapes: list[dict[int, np.ndarray]] = []
+    cut = 0.0
     if n == 0:
         steps = 0
     else:

@@ -248,7 +248,7 @@ class Assembly:
             earlier = before.seconds
             before.body.cache.clear()  # its factor need not be held beside the next one
         options = self.options_of(side, model) if mesh is None else mesh.options()
-        options |= {} if self.kept else LADDER[model].at_rest
+        options |= {} if self.kept else dict(LADDER[model].at_rest)
         shaft = self._reduce(
             side, model, build(self.meshed_scene(side, model), model, **options), start
         )
