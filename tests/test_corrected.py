@@ -32,6 +32,17 @@ def body(scene):
     return sg.build(scene, "corrected", refinement=0.3, modes=8)
 
 
+def test_a_body_without_modes_is_the_same_at_rest_and_has_no_frequencies(scene, body):
+    at_rest = sg.build(scene, "corrected", refinement=0.3, modes=0)
+    at_port, usual = (sg.condense(b, scene, scene.port.name).compliance for b in (at_rest, body))
+    # both correct the same flexibility: what modes and residuals share out adds up to it
+    np.testing.assert_allclose(at_port, usual, rtol=1e-9, atol=1e-9 * np.nanmin(np.diag(usual)))
+    with pytest.raises(sg.SolidgearError, match="modes = 0 is for statics"):
+        sg.modes(at_rest, scene)
+    with pytest.raises(sg.SolidgearError, match="give 4 or more, or 0 at rest"):
+        sg.build(scene, "corrected", refinement=0.3, modes=2)
+
+
 def recognised(exact, before, after=None):
     """How many modes are."""
     found = module._recognised(exact, before, after or before, [("full", tuple(range(6)))])

@@ -94,6 +94,8 @@ def test_words_of_goals_and_limits():
         (["segment.left.diamter=40 mm:50 mm"], "max f1", [], "diamter"),
         ([SPAN], "bending 1", [], "max NUMBER"),
         ([SPAN], "max bnding 1", [], "has no bnding 1.*bending 1"),
+        # before a mesh: no mode is without a number
+        ([SPAN], "max safety", [], "has no .safety.*yield_safety.*and modes such as bending 1"),
         ([SPAN], "max f1", ["C_zz = 5"], "NUMBER < VALUE"),
         ([SPAN], "max f1", ["C_zz < 5 kg"], "'kg' is not a unit"),
         ([SPAN], "max f1", ["C_zz < five"], "is not a number with a unit"),

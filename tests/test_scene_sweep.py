@@ -3,10 +3,15 @@
 from __future__ import annotations
 
 import math
+import tomllib
+from pathlib import Path
 
 import pytest
 
 import solidgear as sg
+from solidgear.core.bounds import harmonic
+from solidgear.core.bounds.patches import local_energies
+from solidgear.strength.stress import at_rest
 from solidgear.variants.sweep.bearing_variants import bearing_variants
 from tests.command import command, table
 
@@ -32,6 +37,32 @@ def test_a_row_is_what_the_file_changed_by_hand_gives(tmp_path):
     statics = sg.condense(body, scene, scene.port.name)
     assert rows["C_zz"][1] == pytest.approx(statics.compliance[2, 2], rel=1e-12)
     assert rows["f1_hz"][1] == pytest.approx(sg.modes(body, scene, n=2).frequency_hz[-2], rel=1e-9)
+
+
+def test_local_problems_of_a_row_are_solved_once(monkeypatch):
+    solved = []
+
+    def counted(space, block, loading):
+        solved.append(block.name)
+        return local_energies(space, block, loading)
+
+    monkeypatch.setattr(harmonic, "local_energies", counted)
+    sg.sweep(SHAFT, "bearing.A.seat_width=20 mm", tolerance=0.1, n=2)
+    # those of the mesh, and of the modes of the row with them
+    assert len(solved) == len({*solved}) == 3
+
+
+def test_rows_of_stress_solve_no_grooves_which_no_rating_reads(monkeypatch):
+    def refused(*_):
+        raise AssertionError("a solid of a groove")
+
+    monkeypatch.setattr(at_rest, "solid_notches", refused)
+    tables = tomllib.loads(Path("tests/found/design/notches.toml").read_text())
+    tables["feature"] = [part for part in tables["feature"] if part["kind"] != "fillet"]
+    rows = sg.sweep(tables, "segment.c.length=100 mm", ask="stress")
+    # by DIN 743 by hand: keyway, ring groove and press fit
+    assert rows["worst_notch"][0] == "key"
+    assert rows["fatigue_safety"][0] == pytest.approx(5.96, abs=0.01)
 
 
 @pytest.mark.slow

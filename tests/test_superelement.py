@@ -51,7 +51,14 @@ def test_modes_on_bearings_are_those_of_the_body_within_the_bound(body, part, su
     assert found.error_bound.max() < (1e-6 if part.kind == "rubin" else 0.02)
 
 
-def test_statics_are_those_of_the_body(body, part):
+def test_a_part_without_modes_proves_no_frequency(body):
+    bare = on_bearings(sg.rubin(body, n=0), SCENE).modes(2)
+    assert np.isinf(bare.error_bound[1:]).all()
+
+
+@pytest.mark.parametrize("modes", [24, 0])
+def test_statics_are_those_of_the_body(body, part, modes):
+    part = part if modes else sg.rubin(body, n=0)
     system = on_bearings(part, SCENE)
     rows = np.delete(system.motion("shaft.pinion"), 4, axis=0)
     found = rows @ system.static(rows.T)
@@ -201,7 +208,7 @@ def test_in_soft_springs_a_shaft_is_a_rigid_body():
     [
         (lambda b: sg.rubin(b, ports=["nose"]), "no port nose"),
         (lambda b: sg.rubin(b, ports=["1", ("1", "section")]), "given twice"),
-        (lambda b: sg.rubin(b, n=0), "one mode or more"),
+        (lambda b: sg.rubin(b, n=-1), "neither may be negative"),
         (lambda b: sg.craig_bampton(b, n=0), "one mode or more|1 or more"),
         (lambda b: sg.craig_bampton(b, ports=[]), "no port to hold"),
         (lambda b: sg.rubin(b).expand(np.zeros(3)), "cannot expand 3"),

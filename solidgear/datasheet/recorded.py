@@ -9,14 +9,14 @@ from solidgear.core import Record, Scene
 from solidgear.datasheet.numbers import recorded_numbers
 from solidgear.datasheet.page import save
 from solidgear.datasheet.shaft import shaft_sheet
-from solidgear.strength.acting import FEW
+from solidgear.strength.acting import NO_MODES
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
 
 
 def recorded_sheet(record: Record, scene: Scene, language: str, path: Path) -> list[Path]:
     """Write the sheet of a shaft with the numbers of its comparison, linked to the report."""
-    assembly = Assembly.of(scene, kept=FEW)
+    assembly = Assembly.of(scene, kept=NO_MODES)
     point = assembly.train.point or AT_REST
     facts = shaft_sheet(assembly, point, numbers=recorded_numbers(record, scene))
     linked = replace(facts, language=language, report="report.html")

@@ -74,7 +74,7 @@ def sheet(
     Language(language, ENGINEERING)  # before anything is solved
     if not isinstance(conditions, Conditions):
         conditions = Conditions(**(conditions or {}))
-    settings = StressSettings(conditions=conditions)
+    settings = StressSettings(conditions=conditions, surfaces=False)
     acting = Acting(**under)
     with explained(source):
         if isinstance(source, Train) or is_train(source):

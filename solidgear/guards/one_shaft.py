@@ -10,18 +10,21 @@ from typing import TYPE_CHECKING
 from solidgear.core import (
     QUANTITIES,
     BarredMode,
+    Body,
     Mode,
     ModeSet,
     Quantity,
     Settled,
+    Supports,
     as_supports,
     bars_of_modes,
     settle,
     size,
 )
+from solidgear.core.judge.bounded import with_all_for_bars
 from solidgear.core.judge.change import Side
 from solidgear.core.judge.quantities import Values
-from solidgear.core.judge.solving import answer_of_body
+from solidgear.core.judge.solving import Answer, answer_of_body
 from solidgear.core.scene.own_mass import own_mass
 from solidgear.guards.check import cautions
 
@@ -83,21 +86,34 @@ def one_shaft(
     def say(text: str) -> None:
         progress(f"{letter}: {text}" if letter else text)
 
-    settled = settle(scene, tol, points=points, before=before, progress=say)
-    body = settled.body
-    say("statics and modes")
-    solution = answer_of_body(
-        body,
-        as_supports(scene),
-        [scene.port.name, *points],
-        n=scene.ask.modes,
-        max_frequency=scene.ask.max_frequency,
-        ovalising=True,
-        wanted=[q for q in QUANTITIES if q.is_frequency],
-        spare=True,
-    )
+    def solved(body: Body) -> Answer:
+        say("statics and modes")
+        return answer_of_body(
+            body,
+            as_supports(scene),
+            [scene.port.name, *points],
+            n=scene.ask.modes,
+            max_frequency=scene.ask.max_frequency,
+            ovalising=True,
+            wanted=[q for q in QUANTITIES if q.is_frequency],
+            spare=True,
+        )
+
+    last: list[tuple[Answer, ModeSet]] = []  # of the last mesh, with all that its bars rest on
+
+    def listing(body: Body, supports: Supports) -> ModeSet:
+        solution = solved(body)
+        last[:] = [(solution, with_all_for_bars(body, supports, solution.modes.whole))]
+        return last[0][1]
+
+    settled = settle(scene, tol, points=points, before=before, listing=listing, progress=say)
+    body, extended = settled.body, None
+    if last and last[0][0].body is body:
+        ((solution, extended),) = last
+    else:
+        solution = solved(body)
     say("error bars of its frequencies")
-    bars = bars_of_modes(scene, body, solution.modes.whole, settled)
+    bars = bars_of_modes(scene, body, solution.modes.whole, settled, extended)
     for quantity in (q for q in settled.bars if q.is_frequency):
         # bending may be called by its plane
         mode = solution.modes.named(quantity)

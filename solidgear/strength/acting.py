@@ -30,8 +30,8 @@ from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import named_point
 from solidgear.trains.loading import load_train
 
-#: modes kept of a shaft, whose deflection needs none
-FEW = 6
+#: modes kept of a shaft at rest, which needs none: they are half of what a 3D body costs
+NO_MODES = 0
 #: torque as a text with a unit or a number in N m; None where it is not given
 Given: TypeAlias = str | float | None
 if TYPE_CHECKING:
@@ -109,7 +109,7 @@ class Acting(Group):
         """
         if isinstance(source, Train) or is_train(source):
             train, point = self.read_train(source)
-            return Assembly(train, kept=FEW, tol=tol), point
+            return Assembly(train, kept=NO_MODES, tol=tol), point
         of_train = {"`torque`": self.torque, "`point`": self.point, "`weight`": self.weight}
         options = {option: value is not None for option, value in of_train.items()}
         name = name_of_source(source)
@@ -122,7 +122,7 @@ class Acting(Group):
         if self.drive:
             scene = driven(scene, torques(self.drive))
         with explained(source):
-            assembly = Assembly.of(scene, kept=FEW, tol=tol)
+            assembly = Assembly.of(scene, kept=NO_MODES, tol=tol)
         return assembly, assembly.train.point or AT_REST
 
     def read_train(self, source: Source | Train) -> tuple[Train, OperatingPoint]:

@@ -8,7 +8,7 @@ from math import hypot, sqrt
 from solidgear.comparison.two.beside import NumberChange
 from solidgear.core import Scene, SolidgearError
 from solidgear.core.judge.change import Change
-from solidgear.strength.acting import FEW
+from solidgear.strength.acting import NO_MODES
 from solidgear.strength.deflection.at_rest import Deflection, Measured, deflections
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
@@ -33,7 +33,7 @@ def loaded_changes(scenes: Sequence[Scene]) -> tuple[tuple[NumberChange, ...], s
 
 
 def _deflected(scene: Scene) -> Deflection:
-    assembly = Assembly.of(scene, kept=FEW)
+    assembly = Assembly.of(scene, kept=NO_MODES)
     return deflections(assembly, [assembly.train.point or AT_REST], *assembly.solids)[0]
 
 

@@ -140,31 +140,46 @@ def geometry_share(body: Body) -> float:
 
 
 def mode_bars(
-    scene: Scene, body: Body, supports: Supports, modes_listed: ModeSet
+    scene: Scene,
+    body: Body,
+    supports: Supports,
+    modes_listed: ModeSet,
+    extended: ModeSet | None = None,
 ) -> dict[str, float]:
     """Compute error bars of the frequencies of a solid, which lie above the exact ones, of all
     families: relative, by the names of elastic modes; without modes beyond whose neighbours nothing
-    was found.
+    was found. `extended` is the list with all that bars rest on, where it is known.
     """
-    names = [m.name for m in modes_listed.modes if m.frequency_hz > 0]
+    names = elastic_names(modes_listed)
     if not names:
         return {}
-    elastic = [m for m in modes_listed.modes if m.frequency_hz > 0]
-
-    def rest_on_others(found: ModeSet) -> bool:
-        # the gap to the modes above counts, in every family
-        widened = found is not modes_listed or _all_below(found)
-        return widened and all(is_bounded(found, mode) for mode in elastic)
-
-    extended = extended_until(body, supports, modes_listed, rest_on_others)
+    if extended is None:
+        extended = with_all_for_bars(body, supports, modes_listed)
     bounds = bounds_of(scene, body, supports, False, extended, names)
     bars: dict[str, float] = {}
     misshapen = geometry_share(body)
-    for mode in elastic:
-        least = bounds.frequency(mode)
+    for mode in modes_listed.modes:
+        least = bounds.frequency(mode) if mode.name in names else None
         if least is not None:
             bars[mode.name] = 1 - least / mode.frequency_hz + mode.error + misshapen / 2
     return bars
+
+
+def elastic_names(mode_set: ModeSet) -> list[str]:
+    """Return the names of the elastic modes of a list."""
+    return [mode.name for mode in mode_set.modes if mode.frequency_hz > 0]
+
+
+def with_all_for_bars(body: Body, supports: Supports, listed: ModeSet) -> ModeSet:
+    """Return a list of modes with all others that error bars of its frequencies rest on."""
+    elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]
+
+    def rest_on_others(found: ModeSet) -> bool:
+        # the gap to the modes above counts, in every family
+        widened = found is not listed or _all_below(found)
+        return widened and all(is_bounded(found, mode) for mode in elastic)
+
+    return extended_until(body, supports, listed, rest_on_others)
 
 
 def static_bars(

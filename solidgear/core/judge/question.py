@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from solidgear.core.body import Body, as_supports
+from solidgear.core.body import Body, Supports, as_supports
 from solidgear.core.body.mode_names import ModeName
 from solidgear.core.errors import NoBounds
-from solidgear.core.judge.bounded import bounded
+from solidgear.core.judge.bounded import bounded, elastic_names
 from solidgear.core.judge.refinement import Refinement, Solved
 from solidgear.core.judge.solving import ENOUGH, Numbers, Statics, numbers, search_modes
 from solidgear.core.ladder import build
@@ -34,6 +34,9 @@ COUPLING = 0.01
 Question = tuple[tuple[str, ...] | None, tuple[Quantity, ...]]
 #: options of a mesh and families, None for all of them -> body
 BuildBody = Callable[[Mapping[str, Any], tuple[str, ...] | None], Body]
+#: body, supports -> modes whose error bars are asked for next, with all that these rest on, should the
+#: mesh be the last: their local problems are solved with those of the question
+Listing = Callable[[Body, Supports], ModeSet]
 
 
 class FamilySolver:
@@ -43,8 +46,14 @@ class FamilySolver:
     those still open, by groups of families of motion. A whole body has all families on every mesh.
     """
 
-    def __init__(self, refinement: Refinement, build_body: BuildBody | None = None):
+    def __init__(
+        self,
+        refinement: Refinement,
+        build_body: BuildBody | None = None,
+        listing: Listing | None = None,
+    ):
         self.refinement = refinement
+        self.listing = listing
         self.build_body = build_body or partial(build_families, refinement.scene, refinement.model)
         #: groups of families that bearings couple, as far as quantities need them; None where all
         #: families are solved together
@@ -129,8 +138,14 @@ class FamilySolver:
             )
         values = numbers(statics, modes, frequencies)
         judged_names = self._judged_names(values, names)
+        later = []
+        if frequencies and self.listing is not None:
+            listed = self.listing(body, supports)
+            later.append((listed, elastic_names(listed)))
         try:
-            judged = bounded(scene, body, supports, statics, modes, judged_names, values.solver)
+            judged = bounded(
+                scene, body, supports, statics, modes, judged_names, values.solver, later
+            )
         except NoBounds as error:
             refinement.leave_without_bars(error)
             return values, None

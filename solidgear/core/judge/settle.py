@@ -26,7 +26,7 @@ from solidgear.core.errors import NoBounds
 from solidgear.core.judge.answer import read_tolerance, solve_cheapest
 from solidgear.core.judge.bounded import mode_bars, static_bars
 from solidgear.core.judge.quantities import at_points, between
-from solidgear.core.judge.question import FamilySolver, build_families
+from solidgear.core.judge.question import FamilySolver, Listing, build_families
 from solidgear.core.judge.refinement import FINER_FILE, NO_FINER, Progress, Refinement, mesh_words
 from solidgear.core.judge.steps import Step
 from solidgear.core.ladder import build
@@ -112,6 +112,7 @@ def settle(
     points: Sequence[str] = (),
     before: Settled | None = None,
     only: str = "",
+    listing: Listing | None = None,
     progress: Progress = lambda _: None,
 ) -> Settled:
     """Solve the cheapest body whose error bars of all numbers asked for are within a tolerance;
@@ -131,6 +132,8 @@ def settle(
         on that body first, with the data that are kept with it.
     only : str, optional
         The solid to solve; by default the cheapest that holds the scene.
+    listing : callable, optional
+        Takes a body and supports, and returns the modes whose error bars are asked for next.
 
     Raises
     ------
@@ -150,7 +153,7 @@ def settle(
 
     def solver_of(refinement: Refinement) -> FamilySolver:
         if before is None or before.rung != refinement.model.name:
-            return FamilySolver(refinement)
+            return FamilySolver(refinement, listing=listing)
         if before.mesh is not None:
             refinement.mesh = before.mesh
 
@@ -159,7 +162,7 @@ def settle(
                 return before.body
             return build_families(scene, refinement.model, options, families)
 
-        return FamilySolver(refinement, build_body)
+        return FamilySolver(refinement, build_body, listing)
 
     solver, steps = solve_cheapest(scene, tol, wanted, progress, solver_of, whole=True, only=only)
     refinement = solver.refinement
@@ -182,12 +185,17 @@ def settle(
 
 
 def bars_of_modes(
-    scene: Scene, body: Body, mode_set: ModeSet, settled: Settled | None
+    scene: Scene,
+    body: Body,
+    mode_set: ModeSet,
+    settled: Settled | None,
+    extended: ModeSet | None = None,
 ) -> dict[str, float]:
     """Return relative error bars of frequencies of a solid by the names of their modes; those that
-    its mesh was chosen by keep the bar it was chosen with.
+    its mesh was chosen by keep the bar it was chosen with. `extended` is the list with all that bars
+    rest on, where it is known.
     """
-    bars = mode_bars(scene, body, as_supports(scene), mode_set)
+    bars = mode_bars(scene, body, as_supports(scene), mode_set, extended)
     if settled is None or without_axis(scene):
         return bars
     judged = [name for name in map(Quantity, mode_set.names) if name in settled.bars]

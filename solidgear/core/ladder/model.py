@@ -45,6 +45,9 @@ class Model:
     marker: ClassVar[str] = "P"  #: in charts
     options: ClassVar[Mapping[str, Option]] = {}  #: of the builder, with their limits
     preset: ClassVar[Options] = {}  #: options of a builder that several models share
+    at_rest: ClassVar[
+        Options
+    ] = {}  #: options with which the body is exact at rest, and costs least
     coarser: ClassVar[str] = "use a coarser mesh"  #: advice where it is too large
     #: sorts of features (`CUTS`, `CYCLIC`), or a part from a file (`PARTS`), that it can model, one
     #: of them at a time; a body of revolution none

@@ -147,7 +147,11 @@ CORRECTED_OPTIONS = {
     "harmonic_size": _RELATIVE,
     "refinement": _REFINEMENT,
     "modes": Option(
-        "free modes that the body keeps", "whole", least=4, most=60, why="higher ones ovalise"
+        "free modes that the body keeps, 0 at rest",
+        "whole",
+        least=0,
+        most=60,
+        why="higher ones ovalise",
     ),
     "attachments": _TIES,
 }

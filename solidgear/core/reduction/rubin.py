@@ -65,13 +65,14 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
     body : Body
         Of any model.
     n : int
-        Lowest elastic modes of the free body to keep; twins count twice.
+        Lowest elastic modes of the free body to keep; twins count twice. With none statics is exact
+        all the same, and frequencies are not bounded.
     ports : iterable of str or (str, str), optional
         Ports to keep, by name or as (name, attachment); all names by default, each with its first
         attachment.
     steps : int
         Krylov steps J on the residual fields.  Each adds up to six coordinates a port, and makes
-        the error about a power of ``(frequency / cut)^2`` smaller twice.
+        the error about a power of ``(frequency / cut)^2`` smaller twice; without modes there are none.
 
     Returns
     -------
@@ -91,13 +92,16 @@ def rubin(body: Body, n: int = 30, ports: PortChoice | None = None, steps: int =
     >>> part.kind, part.rigid
     ('rubin', 6)
     """
-    if n < 1 or steps < 0:
-        raise SolidgearError(
-            f"rubin: n = {n} modes and {steps} steps; ask for one mode or more, and no negative steps"
-        )
+    if n < 0 or steps < 0:
+        raise SolidgearError(f"rubin: n = {n} modes and {steps} steps; neither may be negative")
     chosen = chosen_ports(body, ports)
-    free_modes = modes(body, (), n=min(n + 1, body.size), ovalising=False)
-    shapes, cut = lowest_shapes(free_modes, n)
+    shapes: list[dict[int, np.ndarray]] = []
+    cut = 0.0
+    if n == 0:
+        steps = 0
+    else:
+        free_modes = modes(body, (), n=min(n + 1, body.size), ovalising=False)
+        shapes, cut = lowest_shapes(free_modes, n)
     blocks: dict[int, ReducedMotions] = {}
     indices = list(chosen.values())
     for index, block in enumerate(body.blocks):

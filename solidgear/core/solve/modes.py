@@ -220,6 +220,11 @@ def modes(
     """
     if n < 1:
         raise SolidgearError(f"modes: n = {n} is not a number of modes; ask for 1 or more")
+    if body.mesh.get("modes_kept") == 0:
+        raise SolidgearError(
+            f"{body.fidelity}: a body of modes = 0 is for statics and has no natural frequencies; keep "
+            "some of its free modes"
+        )
     if body.factoring.engine == "petsc-gamg":
         raise SolidgearError(
             "modes: engine = petsc-gamg solves statics only; use engine = petsc, whose factor finds modes"

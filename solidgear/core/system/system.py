@@ -352,7 +352,14 @@ class System:
                 "the load works on a motion that nothing resists; balance it, or hold the system"
             )
         omega, shapes = self.elastic
-        return shapes @ ((shapes.T @ load).T / omega**2).T
+
+        def solved(loads: np.ndarray) -> np.ndarray:
+            return shapes @ ((shapes.T @ loads).T / omega**2).T
+
+        g, _ = self.strains
+        moved = solved(load)
+        # of held seats, millions of times stiffer than the rest, the digits that carry their forces
+        return moved + solved(load - g.T @ (g @ moved))
 
     @pinned
     def response(
@@ -432,6 +439,8 @@ def frequency_bound(
     """
     if np.isinf(truncation.cut):
         return np.zeros(n)
+    if truncation.cut == 0:
+        return np.full(n, np.inf)
     theta, limit = 1 / omega**2, 1 / truncation.cut
     weighted = shapes / omega
     excess = weighted.T @ truncation.defect @ weighted

@@ -66,8 +66,8 @@ STILL = 0.5
 NOTHING = 1e-9
 #: eigenvalues nearer than this, relative, are those of a pair
 TWIN = 1e-6
-#: fewest modes that are worth a body
-FEWEST = 2
+#: fewest modes that are worth a body, and fewest that are asked for
+FEWEST, LEAST = 2, 4
 Families = list[tuple[str, tuple[int, ...]]]
 
 
@@ -87,8 +87,12 @@ def corrected(
     :data:`~solidgear.core.models.options.CORRECTED_OPTIONS`, of which the first four are those of the
     harmonic solid, and ``refinement`` that of the 3D mesh of both 3D solids.
 
+    Without modes it is as exact at rest, and solves none; it has no natural frequencies then.
+
     Refused: a rigid seat across a feature, and modes of both meshes that cannot be matched.
     """
+    if 0 < modes < LEAST:
+        raise SolidgearError(f"corrected: modes = {modes}: give {LEAST} or more, or 0 at rest")
     plain = scene.plain
     base = harmonic(
         plain,
@@ -109,7 +113,7 @@ def corrected(
     families: Families = [("full", tuple(range(6)))]
     if cut_mesh.plane is not None:
         families = list(PARTS[cut_mesh.plane])
-    exact = _recognised(exact, before, after, families)
+    exact = _recognised(exact, before, after, families) if modes else exact
     numbers = _corrected(exact, before, after, families)
     while not _positive_enough(numbers.static) and exact.motions.shape[1] > FEWEST:
         exact = exact.first(_fewer(exact))
@@ -463,9 +467,9 @@ class Modal:
 
 def modal(body: Body, count: int) -> Modal:
     """Compute the port numbers of a free body with the ``count`` lowest modes, twins counted twice."""
-    mode_set = modes(body, (), n=count, ovalising=False, stations=STATIONS)
     vectors, values, moved = [], [], []
-    for mode in mode_set.modes:
+    mode_set = modes(body, (), n=count, ovalising=False, stations=STATIONS) if count else None
+    for mode in mode_set.modes if mode_set else ():
         if mode.frequency_hz == 0.0 or mode.captured < SHAFT:
             continue
         for vector, motion in zip(mode.vectors, mode.motions):
@@ -474,13 +478,14 @@ def modal(body: Body, count: int) -> Modal:
             values.append(sum(v @ (body.blocks[b].stiffness @ v) for b, v in vector.items()))
     motions = np.array([body.port_motions(v) for v in vectors]).T
     sections = np.array(moved).T
+    gram = mode_set.gram if mode_set else np.eye(6 * STATIONS)
     static, inert, fields = _static(body)
     return Modal(
         rigid_mass=body.mass_matrix(),
         value=np.diag(values),
         motions=motions.reshape(6 * len(body.ports), len(vectors)),
         sections=sections.reshape(6 * STATIONS, len(vectors)),
-        gram=mode_set.gram,
+        gram=gram,
         static=static,
         inert=inert,
         vectors=vectors,

@@ -41,6 +41,7 @@ class Corrected(Volume):
     colour = "#a05a00"
     marker = "^"
     options = CORRECTED_OPTIONS
+    at_rest = {"modes": 0}
     coarser = "lower refinement, order or layers"
     holds = (CUTS,)
     for_features = True

@@ -134,6 +134,8 @@ class StressSettings:
     duty: bool = False  #: whether ratings are over the duty table
     #: the same of 3D solids at keyways and cross holes; None for no such solids
     local: float | None = None
+    #: whether grooves and other features get the stress on their surface, by solids that no rating uses
+    surfaces: bool = True
 
     def __post_init__(self) -> None:
         check_tolerance(self.tolerance)
@@ -391,7 +393,9 @@ def _shafts(
         )
         further = [forces_of(scene, loads[side].loads, loads[side].gravity) for loads in variants]
         name = scene.name if train.is_one_shaft else side
-        solids = solid_notches(scene, stress, asked.tolerance, asked.local, progress)
+        solids: tuple[tuple[SolidNotch, ...], tuple[str, ...]] = (), ()
+        if asked.surfaces:
+            solids = solid_notches(scene, stress, asked.tolerance, asked.local, progress)
         safety = None if asked.duty else _open_safety(scene, stress, further, asked.conditions)
         ranges = _ranges(stress, further)
         shafts.append(StressedShaft(name, scene, shaft_loads, stress, *ranges, safety, *solids))

@@ -102,7 +102,7 @@ class Assembly:
 
     train: Train
     reduction: str = "rubin"
-    kept: int = KEPT  #: modes of each shaft
+    kept: int = KEPT  #: modes of each shaft; with none it is exact at rest, and solves no modes
     #: builder options of models, by their names; of one shaft by (side, model), before those
     settings: Mapping[str | tuple[str, str], Mapping] = field(default_factory=dict)
     #: relative error that the meshes of harmonic shafts may leave; by default the tolerance of the
@@ -248,6 +248,7 @@ class Assembly:
             earlier = before.seconds
             before.body.cache.clear()  # its factor need not be held beside the next one
         options = self.options_of(side, model) if mesh is None else mesh.options()
+        options |= {} if self.kept else dict(LADDER[model].at_rest)
         shaft = self._reduce(
             side, model, build(self.meshed_scene(side, model), model, **options), start
         )
@@ -385,10 +386,7 @@ class Assembly:
     def _reduce(self, side: str, model: str, body: Body, start: float) -> ShaftModel:
         """Reduce the body of a shaft, whose time counts from `start`."""
         part = REDUCTIONS[self.reduction](body, n=self.kept)
-        seconds = perf_counter() - start
-        return ShaftModel(
-            side=side, model=model, part=part, body=body, unknowns=body.size, seconds=seconds
-        )
+        return ShaftModel(side, model, part, body, body.size, perf_counter() - start)
 
     def is_built(self, side: str, model: str) -> bool:
         """Return whether a shaft by a model has been built."""

@@ -6,7 +6,15 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from solidgear.core import SolidgearError, Source, read_tolerance, spin_caution
+from solidgear.core import (
+    SolidgearError,
+    Source,
+    nearest,
+    read_tolerance,
+    show,
+    spin_caution,
+)
+from solidgear.core.body.mode_names import ModeName
 from solidgear.variants.optimise.wish import FIRST, Rows
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
@@ -66,13 +74,14 @@ def scene_designs(
         solved = f"the {model} model, without error bars"
         unbarred = without_bars(model)
     columns = {kind: [*columns_of(base, (kind,), barred=False)] for kind in AT_REST}
-    kinds, modes = _kinds_of_shaft(columns, names)
-    task = SceneTask(variants, model, tol, {}, modes, ask=kinds)
     names_at_rest = [
         *map(str, STATICS),
         "mass",
         *(name for group in columns.values() for name in group),
     ]
+    _refuse_strange(names, names_at_rest)
+    kinds, modes = _kinds_of_shaft(columns, names)
+    task = SceneTask(variants, model, tol, {}, modes, ask=kinds)
 
     def names_of(row: dict[str, Any]) -> list[str]:
         modes_of_row = [
@@ -86,6 +95,17 @@ def scene_designs(
 
 #: kinds of numbers of a shaft that have columns of their own
 AT_REST = tuple(kind for kind in ASKED_OF_SHAFT if kind != ANSWER)
+
+
+def _refuse_strange(names: Sequence[str], known: Sequence[str]) -> None:
+    """Refuse names that are no column and, without a number, no mode, before anything is solved."""
+    for name in names:
+        if not {name, name.replace(" ", "_")} & {*known} and not FIRST.fullmatch(name):
+            if ModeName(name).number is None:
+                raise SolidgearError(
+                    f"`goal`, `keep`: a design has no {show(name, 40)}{nearest(name, known)}; it has "
+                    f"{', '.join(known)}, and modes such as bending 1"
+                )
 
 
 def _kinds_of_shaft(

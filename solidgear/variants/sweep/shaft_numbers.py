@@ -9,10 +9,10 @@ from typing import Any
 from solidgear.bearings.duty import LivesOverPoints
 from solidgear.core import Scene, SolidgearError
 from solidgear.core.ladder import solid_of
-from solidgear.strength.acting import FEW
+from solidgear.strength.acting import NO_MODES
 from solidgear.strength.deflection.at_rest import Measured, deflections
 from solidgear.strength.load import AT_REST
-from solidgear.strength.stress.at_rest import stress_at_rest
+from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.strength.stress.notch_tables import not_rated
 from solidgear.strength.stress.rating import Rating
 from solidgear.trains.assembly.assembly import Assembly
@@ -37,6 +37,8 @@ WORST, LOCAL = "worst_notch", "notch_stress"
 #: column of what has neither safety nor stress, such as sharp corners, which may be worse
 NOT_RATED = "not_rated"
 BAR = " bar"
+#: a row has ratings, and the stress on fillets
+RATED = StressSettings(surfaces=False)
 
 
 def columns_of(scene: Scene, ask: Sequence[str], barred: bool) -> dict[str, type]:
@@ -91,7 +93,7 @@ def _points(assembly: Assembly) -> tuple[OperatingPoint, ...]:
 
 def _deflection(scene: Scene, model: str, tolerance: float | str | None) -> dict[str, Any]:
     """Return motions and loads of bearings, the largest of all cases."""
-    assembly = Assembly.of(scene, kept=FEW, tol=tolerance)
+    assembly = Assembly.of(scene, kept=NO_MODES, tol=tolerance)
     out: dict[str, Any] = {}
     for solution in deflections(assembly, _points(assembly), model):
         for place, (x, _, z, thx, _, thz) in solution.displacement.items():
@@ -118,7 +120,7 @@ def _across(pair: Sequence[Measured]) -> tuple[float, float | None]:
 
 def _lives(scene: Scene) -> list[LivesOverPoints]:
     """Return the life of every catalogue bearing of a shaft in all cases of its loads."""
-    assembly = Assembly.of(scene, kept=FEW)
+    assembly = Assembly.of(scene, kept=NO_MODES)
     operating, states = Operating(assembly), list[OperatingState]()
     for point in _points(assembly):
         states.append(operating.at(point, states[-1] if states else None))
@@ -127,10 +129,10 @@ def _lives(scene: Scene) -> list[LivesOverPoints]:
 
 def _stress(scene: Scene, model: str) -> dict[str, Any]:
     """Return the least safeties of all notches and the largest local stress, the worst of all cases."""
-    assembly = Assembly.of(scene, kept=FEW)
+    assembly = Assembly.of(scene, kept=NO_MODES)
     out: dict[str, Any] = {}
     for point in _points(assembly):
-        (stressed,) = stress_at_rest(assembly, point, model).shafts
+        (stressed,) = stress_at_rest(assembly, point, model, RATED).shafts
         if not stressed.found.worst:
             raise SolidgearError("no notch has a stress: the shaft has no fillets or other notches")
         out[NOT_RATED] = "; ".join(not_rated(stressed.found))
