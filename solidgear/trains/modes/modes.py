@@ -6,8 +6,9 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from solidgear.core import DOF_NAMES, SolidgearError, System
+from solidgear.core import DOF_NAMES, LADDER, SolidgearError, System
 from solidgear.core.judge.at_rest import Moved
+from solidgear.core.ladder.model import SOLID
 from solidgear.core.plain import plain
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import free_directions, seat_motion
@@ -108,7 +109,10 @@ class TrainModes:
         lines += [*self._still(), *self.local, *filter(None, [self.turn, self.hidden])]
         bound = "Bound: largest relative error by the reduction, proven"
         if self.has_mesh_bars:
-            bound += "; mesh: error bar of the harmonic shafts' meshes, by local problems."
+            bound += "; mesh: error bar of the harmonic shafts' meshes, by local problems"
+            solids = {*LADDER.of(SOLID)} - {JUDGE}
+            others = [side for side, model in self.models.items() if model in solids]
+            bound += f", and none of {' and '.join(others)}." if others else "."
         else:
             bound += "; it does not include the shafts' meshes."
         lines.append(bound)
