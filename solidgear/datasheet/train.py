@@ -40,7 +40,7 @@ from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.kinematics import train_orders
-from solidgear.trains.assembly.shaft import JUDGE
+from solidgear.trains.assembly.shaft import JUDGE, usual_models
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import settled_at
@@ -63,7 +63,7 @@ def train_sheet(
     """Return the sheet of a train, at an operating point where it has one."""
     progress("natural frequencies")
     moving = Assembly(settled_at(train, point) if point else train)
-    modes = train_modes(moving, *moving.usual_models, at_most=MODES)
+    modes = train_modes(moving, *usual_models(train.shafts).values(), at_most=MODES)
     models = tuple(dict.fromkeys(modes.models.values()))
     # only meshes of harmonic shafts have an error bar in modes of a train
     listed = modes.modes

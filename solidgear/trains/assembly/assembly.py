@@ -72,7 +72,6 @@ from solidgear.trains.assembly.shaft import (
     checked_model,
     lumped,
     names_from,
-    usual_models,
 )
 from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
@@ -501,11 +500,6 @@ class Assembly:
         """Cheapest solids that model all of every shaft, one for all where they are the same."""
         solids = tuple(map(solid_of, self.scenes.values()))
         return solids[:1] if len({*solids}) == 1 else solids
-
-    @property
-    def usual_models(self) -> tuple[str, ...]:
-        """Models of shafts for which none is named: see :func:`usual_models`."""
-        return tuple(usual_models(self.train.shafts).values())
 
     def left_out(self, model: str) -> tuple[str, ...]:
         """Return the cuts and teeth that a model of revolution leaves out of all shafts, in words."""
