@@ -6,9 +6,8 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from solidgear.core import DOF_NAMES, LADDER, SolidgearError, System
+from solidgear.core import BEAM, DOF_NAMES, LADDER, SolidgearError, System
 from solidgear.core.judge.at_rest import Moved
-from solidgear.core.ladder.model import SOLID
 from solidgear.core.plain import plain
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import free_directions, seat_motion
@@ -110,7 +109,7 @@ class TrainModes:
         bound = "Bound: largest relative error by the reduction, proven"
         if self.has_mesh_bars:
             bound += "; mesh: error bar of the harmonic shafts' meshes, by local problems"
-            solids = {*LADDER.of(SOLID)} - {JUDGE}
+            solids = {*LADDER.bodies} - {*LADDER.of(BEAM), JUDGE}
             others = [side for side, model in self.models.items() if model in solids]
             bound += f", and none of {' and '.join(others)}." if others else "."
         else:
