@@ -20,7 +20,7 @@ from solidgear.core.scene.closed_form import mass_properties, whole_mass
 from solidgear.guards import check, elements, models
 from solidgear.guards import probe as probe_module
 from solidgear.guards.check import cautions, check_scene, notices
-from solidgear.guards.notice import LEVELS, Notice, against, beams, everything
+from solidgear.guards.notice import LEVELS, Notice, against, beams, everything, sure
 from solidgear.guards.probe import Probe
 from solidgear.guards.registry import GUARDS
 from solidgear.guards.sheet import check_sheet, thoughts
@@ -969,3 +969,10 @@ def test_a_spring_that_stands_for_rigid_is_no_slip_in_units(stiffness, slipped, 
     ]
     records = said(sg.Scene.from_parts([rod], bearings=ends), "timoshenko", {})
     assert any("wrong unit" in record.sentence for record in records) == slipped
+
+
+@pytest.mark.parametrize(
+    ("bar", "words"), [(0.213, "20 %"), (0.0096, "1 %"), (0.0004, "0.04 %"), (2e-5, "0.01 %")]
+)
+def test_error_bars_of_guards_have_no_power_of_ten(bar, words):
+    assert sure(bar).endswith(words)

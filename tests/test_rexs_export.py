@@ -157,7 +157,7 @@ def test_the_file_says_what_the_train_is_to_whoever_reads_its_xml(tmp_path):
         [15, -15], rel=1e-14
     )
     widths = [g["face_width"] for _, g in numbers(root, "cylindrical_gear")]
-    assert widths == pytest.approx([50, 46, 65, 60])
+    assert widths == pytest.approx([50, 46, 65, 65])  # the last leaves its own to its mate
     shafts = {name: s["support_vector"] for name, s in numbers(root, "shaft")}
     apart = np.subtract(shafts["middle"], shafts["input"])
     assert np.hypot(*apart[1:]) == pytest.approx(30 + 85.5)
@@ -286,3 +286,19 @@ def test_names_of_a_file_lead_out_of_no_folder(tmp_path):
 def test_what_is_no_shaft_of_sections_is_refused():
     with pytest.raises(sg.SolidgearError, match="is no gearbox"):
         sg.export(np.eye(3), "x.rexs")
+
+
+def test_a_wheel_has_what_its_file_leaves_to_its_mate(tmp_path, monkeypatch):
+    # the file that `new` writes gives module, helix and width once, for the pinion
+    monkeypatch.chdir(tmp_path)
+    assert command("new", "box", "--kind", "helical").exit_code == 0
+    document = exported(read_source("box.toml")).document
+    wheel, pinion = (
+        next(c for c in document.components.values() if c.number("number_of_teeth") == teeth)
+        for teeth in (57, 23)
+    )
+    for name in ("normal_module", "face_width"):
+        assert wheel.number(name) == pinion.number(name)
+    name = "helix_angle_reference_diameter"
+    assert wheel.number(name) == -pinion.number(name)
+    imported(document, "box")

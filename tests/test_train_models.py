@@ -1,6 +1,7 @@
 """Systems made from a train file, against matrices put together by hand and against exact limits."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -13,8 +14,10 @@ from solidgear.core.frames import shift
 from solidgear.core.solve.statics import condense
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.meshes import mesh_limit
+from solidgear.trains.judge.judge import judge_train
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.modes.naming import TRAIN, mode_names
+from solidgear.trains.options import models_of
 from tests.command import command
 from tests.dense import whole
 from validation.thesis.lumped_pair import LumpedPair
@@ -313,3 +316,28 @@ def test_the_name_of_the_lumped_point_means_nothing():
         for train in (TRAIN_DATA, named)
     )
     assert other == pytest.approx(usual, rel=1e-9, abs=1e-9)
+
+
+def test_a_shaft_with_a_cut_has_the_solid_that_models_it_where_none_is_named():
+    # a keyed pinion was refused by every command on modes, with no model asked for
+    shafts = dict(TRAIN_DATA.shafts)
+    keyed = sg.load(OVERHUNG.with_name("pinion_keyed.toml"))
+    shafts["pinion"] = shafts["pinion"].with_changes(scene=keyed)
+    assert models_of(shafts, "train", None) == {"pinion": "corrected", "gear": "harmonic"}
+    assert models_of(shafts, "train", {"pinion": "harmonic"})["pinion"] == "harmonic"
+    found = train_modes(Assembly(TRAIN_DATA), "euler", "euler", at_most=1)
+    mixed = replace(
+        found,
+        models={"pinion": "corrected", "gear": "harmonic"},
+        modes=tuple(replace(mode, mesh=1e-6) for mode in found.modes),
+    )
+    assert any(
+        "harmonic shafts' meshes" in line and "none of pinion." in line for line in mixed.notes()
+    )
+
+
+def test_mixes_of_a_train_with_a_cut_are_refused_with_what_does_answer():
+    keyed = sg.load(OVERHUNG.with_name("pinion_keyed.toml"))
+    shafts = TRAIN_DATA.shafts | {"pinion": TRAIN_DATA.shafts["pinion"].with_changes(scene=keyed)}
+    with pytest.raises(sg.SolidgearError, match=r"'pinion' has keyway.*run solidgear system-modes"):
+        judge_train(Assembly(TRAIN_DATA.with_changes(shafts=shafts)))

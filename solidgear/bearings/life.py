@@ -86,8 +86,7 @@ class Life:
     modified: Modified | None
     without: str  #: reason why there is no modified life; empty where there is one
     equivalent: Equivalent  #: dynamic load P of the basic life
-    #: radial load, N, under which half of each row carrying it evenly would live as long as the
-    #: reference life
+    #: load, N, whose basic life is the reference life, so that this is ``(C/P)^p``
     reference_load: float
     #: static_load, static_safety: P_0 in N, and C_0 / P_0
     static_load: float
@@ -136,7 +135,7 @@ def life(
         modified=None,
         without="",
         equivalent=equivalent,
-        reference_load=fatigue_damage.load,
+        reference_load=rated.dynamic * (1e6 / fatigue_damage.life) ** (1 / LIFE_POWER[data.balls]),
         static_load=static,
         static_safety=_quotient(rated.static, static),
         pressure=tuple((float(row.inner.max()), float(row.outer.max())) for row in rows),

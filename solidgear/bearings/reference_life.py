@@ -136,18 +136,9 @@ class Damage:
         return 1e6 * float(np.sum(self.by_slice * factor ** (-s / p))) ** (-p / s)
 
     @property
-    def load(self) -> float:
-        """Radial load, N, under which half of every row, loaded evenly, would live as long."""
-        rows = len(self.by_slice)
-        return rows * float(self._load_of(self.by_slice.sum() / rows))
-
-    @property
     def slice_loads(self) -> np.ndarray:
         """Load of a row, N, whose slices were all loaded as this one, (rows, slices)."""
-        return self._load_of(self.by_slice * self.by_slice.shape[-1])
-
-    def _load_of(self, damage_sum: np.ndarray) -> np.ndarray:
-        """Return the load of a row with this damage in total, N."""
+        damage_sum = self.by_slice * self.by_slice.shape[-1]
         return self.rating / self.law.edge * damage_sum ** (1 / self.law.standing)
 
 

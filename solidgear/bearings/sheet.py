@@ -186,7 +186,7 @@ def _sources(life: Life) -> Iterator[str]:
         f"{engineering(p.radial, 4)} N, Fa {engineering(p.axial, 4)} N (ISO 281)."
     )
     yield (
-        "L10r by the loads of all elements (ISO/TS 16281), equivalent load "
+        "L10r by the loads of all elements (ISO/TS 16281), as (C/P)^p with P = "
         f"{engineering(life.reference_load, 4)} N."
     )
     if modified is not None:

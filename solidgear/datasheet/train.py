@@ -40,7 +40,7 @@ from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.kinematics import train_orders
-from solidgear.trains.assembly.shaft import JUDGE
+from solidgear.trains.assembly.shaft import JUDGE, usual_models
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import settled_at
@@ -62,10 +62,14 @@ def train_sheet(
 ) -> Datasheet:
     """Return the sheet of a train, at an operating point where it has one."""
     progress("natural frequencies")
-    modes = train_modes(
-        Assembly(settled_at(train, point) if point else train), JUDGE, at_most=MODES
-    )
-    frequencies = tuple(map(_frequency, (mode for mode in modes.modes if mode.frequency_hz > 0)))
+    moving = Assembly(settled_at(train, point) if point else train)
+    modes = train_modes(moving, *usual_models(train.shafts).values(), at_most=MODES)
+    models = tuple(dict.fromkeys(modes.models.values()))
+    # only meshes of harmonic shafts have an error bar in modes of a train
+    listed = modes.modes
+    if models != (JUDGE,):
+        listed = tuple(replace(mode, mesh=None) for mode in listed)
+    frequencies = tuple(map(_frequency, (mode for mode in listed if mode.frequency_hz > 0)))
     speed = None if point is None else point.speed_of(train.reference, train.turns)
     drawn = tuple(DrawnShaft(side, shaft.scene.as_dict()) for side, shaft in train.shafts.items())
     bars = [f.bar for f in frequencies if f.bar is not None]
@@ -73,10 +77,10 @@ def train_sheet(
         title=train.title or train.name,
         file=train.name,
         train=True,
-        trust=Trust(JUDGE, train.ask.tolerance, True, None, max(bars, default=None)),
+        trust=Trust(" + ".join(models), train.ask.tolerance, True, None, max(bars, default=None)),
         drawn=drawn,
         frequencies=frequencies,
-        resonances=resonances(train, modes.modes, speed),
+        resonances=resonances(train, listed, speed),
         turns=train.reference,
         speed=speed,
         bearings=tuple(

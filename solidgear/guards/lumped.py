@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from solidgear.core import BEAM, LADDER, SolidgearError, gap_verdict
+from solidgear.core import SolidgearError, gap_verdict
 from solidgear.core.judge import deviations
 from solidgear.core.judge.lumped import preferred
 from solidgear.core.judge.ties import SCENE
@@ -32,7 +32,7 @@ def effective_mass(probe: Probe) -> Notices:
             ("lumped",),
             f"the published equations of effective mass have no solution here ({thesis.verdict})",
         )
-    better = probe.instead("the beam", *LADDER.of(BEAM))
+    better = probe.instead(BEAM_OR_SOLID, *beams())
     beam = "its beam" if probe.beam_fits else "the beam of the plain part"
     matched, reasons, level = variants["mode-matched"], [], "caution"
     if not (matched.feasible and matched.first):

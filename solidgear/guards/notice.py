@@ -63,7 +63,10 @@ def sure(bar: float | None) -> str:
     """Return an error bar as the end of a clause; empty without one."""
     if not bar:
         return ""
-    return f", give or take {100 * bar:.1g} %" if bar >= 1e-4 else ", to within 0.01 %"
+    # one digit, and no power of ten
+    return (
+        f", give or take {float(f'{100 * bar:.1g}'):g} %" if bar >= 1e-4 else ", to within 0.01 %"
+    )
 
 
 def slip_in_units(

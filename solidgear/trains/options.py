@@ -13,8 +13,7 @@ from solidgear.core import LADDER, SceneError, SolidgearError, Source, document_
 from solidgear.show.command import Group
 from solidgear.show.options import MODEL, Named, options_by_name, relative
 from solidgear.trains.assembly.assembly import Assembly
-from solidgear.trains.assembly.matrices_body import MATRICES
-from solidgear.trains.assembly.shaft import checked_model
+from solidgear.trains.assembly.shaft import checked_model, usual_models
 from solidgear.trains.file.reading import as_written
 from solidgear.trains.file.tables import FIRST_HARMONIC, LAST_HARMONIC
 from solidgear.trains.file.train import Train
@@ -28,8 +27,9 @@ MODELS = (
     f"{', '.join(LADDER.bodies)}, matrices (those of the file), rigid, lumped, lumped-bending, lumped-matched, "
     "lumped-old; a lumped one may name its body, lumped/euler."
 )
+USUAL = "By default harmonic, or the cheapest solid that models cuts of the shaft."
 MOST_KEPT = 200
-#: a model of all shafts, or models by shaft; matrices or harmonic solids where nothing is said
+#: a model of all shafts, or models by shaft; the usual ones where nothing is said
 Models: TypeAlias = str | Mapping[str, str] | None
 #: builder options by shaft, or texts such as ``pinion.order=3``
 Settings: TypeAlias = Mapping[str, Mapping[str, Any]] | Iterable[str] | None
@@ -172,11 +172,11 @@ class Pair(Group):
     """Models of the shafts."""
 
     pinion: Annotated[
-        str, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS}")
-    ] = MODEL
-    gear: Annotated[str, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")] = (
-        MODEL
-    )
+        str | None, typer.Option("--pinion", help=f"Model of the pinion's shaft: {MODELS} {USUAL}")
+    ] = None
+    gear: Annotated[
+        str | None, typer.Option("--gear", help="Model of the gear's shaft, as --pinion.")
+    ] = None
     shafts: Annotated[
         list[str] | None,
         typer.Option(
@@ -187,7 +187,7 @@ class Pair(Group):
     @property
     def models(self) -> dict[str, str]:
         """Models that are given, by shaft."""
-        models = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m != MODEL}
+        models = {s: m for s, m in (("pinion", self.pinion), ("gear", self.gear)) if m is not None}
         for text in self.shafts or []:
             side, equals, model = text.partition("=")
             if not equals:
@@ -247,8 +247,8 @@ class Driven(Mix):
 
 
 def models_of(shafts: Collection[str], name: str, models: Models) -> dict[str, str]:
-    """Return models of shafts by the name of each, of one with matrices these unless models say
-    otherwise; refuse a shaft that the train of that name does not have.
+    """Return models of shafts by the name of each, the usual ones where none is given; refuse a shaft
+    that the train of that name does not have.
     """
     if isinstance(models, str):
         return dict.fromkeys(shafts, models)
@@ -256,9 +256,8 @@ def models_of(shafts: Collection[str], name: str, models: Models) -> dict[str, s
         if side not in shafts:
             names = listed(shafts)
             raise SolidgearError(f"{name} has no shaft {show(side, 40)}; it has {names}")
-    usual = dict.fromkeys(shafts, MODEL)
-    if isinstance(shafts, Mapping):
-        usual |= {side: MATRICES for side, shaft in shafts.items() if shaft.matrices is not None}
+    # names without shafts are those of a file that is not read yet
+    usual = usual_models(shafts) if isinstance(shafts, Mapping) else dict.fromkeys(shafts, MODEL)
     return usual | dict(models or {})
 
 

@@ -254,11 +254,11 @@ class Deflections(Sheeted):
             near = min(self.standings, key=lambda standing: abs(standing.gap))
             return (
                 f"No cheaper model was shown to be within {demand}: use {self.judge.model}. The "
-                f"nearest, {near.model}, is {100 * abs(near.gap):.2g} % off in {near.worst}."
+                f"nearest, {near.model}, is {100 * abs(near.gap):.2g} % off ({near.worst})."
             )
         standing = self.cheapest
         return (
-            f"Cheapest model within {demand}: {standing.model} ({100 * standing.gap:.2g} % off in "
+            f"Cheapest model within {demand}: {standing.model} ({100 * standing.gap:.2g} % off: "
             f"{standing.worst})."
         )
 

@@ -32,10 +32,12 @@ from solidgear.core import (
 )
 from solidgear.core.bounds.refining import Meshed
 from solidgear.core.frames import shift
+from solidgear.core.ladder import solid_of
 from solidgear.core.reduction.condensed import condensed_shaft
 from solidgear.core.reduction.superelement import Superelement
 from solidgear.core.system.parts import Part
 from solidgear.trains.assembly.matrices_body import MATRICES
+from solidgear.trains.file.gears import Shaft
 
 RIGID = "rigid"
 LUMPED = ("lumped", "lumped-bending", "lumped-matched", "lumped-old")
@@ -63,6 +65,16 @@ def checked_model(name: str) -> tuple[str, str]:
     if kind in (*LADDER.bodies, MATRICES):
         return kind, ""
     return kind, body or JUDGE
+
+
+def usual_models(shafts: Mapping[str, Shaft]) -> dict[str, str]:
+    """Return the model of every shaft where none is named: matrices that the file names, else the
+    cheapest solid that models all of it, cuts and parts from files included.
+    """
+    return {
+        side: solid_of(shaft.scene) if shaft.matrices is None else MATRICES
+        for side, shaft in shafts.items()
+    }
 
 
 def names_from(body: str, kinds: Sequence[str]) -> set[str]:

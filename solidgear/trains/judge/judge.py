@@ -19,7 +19,8 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from solidgear.core import BEAM, LADDER, SolidgearError
+from solidgear.core import BEAM, LADDER, Scene, SolidgearError
+from solidgear.core.ladder import solid_of
 from solidgear.core.plain import plain
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.meshes import mesh_bars
@@ -193,6 +194,17 @@ class Verdict:
         return out
 
 
+def _refuse_cuts(side: str, scene: Scene) -> None:
+    """Refuse a shaft with cuts, which beams and the judge of mixes cannot model."""
+    cuts = LADDER[JUDGE].left_out(scene)
+    if cuts:
+        raise SolidgearError(
+            f"mixes are compared with {LADDER[JUDGE].title}s, and shaft {side!r} has {cuts}, which "
+            f"these cannot model; run solidgear system-modes, response and deflect, which take "
+            f"{solid_of(scene)} for it, or take the cuts out of its file to compare mixes"
+        )
+
+
 def judge_train(
     assembly: Assembly,
     highest_hz: float | None = None,
@@ -202,6 +214,8 @@ def judge_train(
     """Judge mixes of beams and solids, the lumped models and further mixes against all shafts
     solid, up to a frequency, Hz, by default that of the file.
     """
+    for side, shaft in assembly.train.shafts.items():
+        _refuse_cuts(side, shaft.scene)
     ask = assembly.train.ask
     highest = highest_hz or ask.max_frequency
     sides = [*assembly.train.shafts]

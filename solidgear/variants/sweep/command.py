@@ -14,7 +14,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeRemaini
 from rich.progress import Progress as ProgressBar
 
 from solidgear.show.command import Group, Progress, command, console
-from solidgear.show.options import AUTO, MODEL, CaseName, Chosen, Run, options, refuse, relative
+from solidgear.show.options import AUTO, CaseName, Chosen, Run, options, refuse, relative
 from solidgear.show.plot import FORMATS, WIDE, check_ending
 from solidgear.show.remarks import document_under
 from solidgear.show.sheet import present, write_page
@@ -232,7 +232,7 @@ def sweep(
         reduced.checked()
         mix = models_of([*shafts_in(document.tables)], scene.stem, pair.models)
         how: Mapping[str, Any] = {
-            "models": mix,
+            "models": pair.models,
             "mesh": train_rows.mesh,
             "settings": of_shafts(model.pairs, mix),
             "ask": train_rows.ask or BY_DEFAULT,
@@ -245,8 +245,8 @@ def sweep(
         }
     else:
         of_train = {
-            "--pinion": pair.pinion != MODEL,
-            "--gear": pair.gear != MODEL,
+            "--pinion": pair.pinion is not None,
+            "--gear": pair.gear is not None,
             "--shaft": bool(pair.shafts),
             "--mesh": bool(train_rows.mesh),
             "--every-point": train_rows.every_point,

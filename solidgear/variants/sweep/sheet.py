@@ -142,7 +142,7 @@ def _train_sheet(result: Swept, task: TrainTask, units: Units, chart: Path | Non
     if MODES in task.ask:
         meshes = ""
         if JUDGE in task.models.values():
-            meshes = "; what the meshes leave, solidgear system-modes tells of one variant"
+            meshes = "; what the meshes leave, solidgear system-modes shows for one variant"
         notes.append(f"Column reduction_bound: what the reduction leaves, proven{meshes}.")
     if CONTACT in task.ask:
         model = "" if task.ask == (CONTACT,) else "Teeth: plane slices, on Timoshenko shafts. "

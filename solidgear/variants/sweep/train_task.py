@@ -21,7 +21,7 @@ from solidgear.teeth.study import touching
 from solidgear.trains.assembly.assembly import KEPT
 from solidgear.trains.assembly.layout import contacts
 from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, solved_meshes
-from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model
+from solidgear.trains.assembly.shaft import LUMPED, checked_model, usual_models
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
 from solidgear.trains.file.flanks import Flanks
 from solidgear.trains.file.operation import OperatingPoint
@@ -338,7 +338,7 @@ def train_task(
         touching(usual)
     return TrainTask(
         variants,
-        models={side: chosen.get(side, JUDGE) for side in usual.shafts},
+        models=usual_models(usual.shafts) | chosen,
         ask=asked,
         n=n,
         max_frequency=max_frequency,

@@ -7,7 +7,18 @@ from typing import Any
 import numpy as np
 
 from solidgear.exchange.rexs.export.parts import Parts
+from solidgear.trains.file.cylindrical import first_given
 from solidgear.trains.file.gears import Gear
+
+
+def with_mate(gear: Gear, mate: Gear) -> Gear:
+    """Return a cylindrical gear with the module, helix and width that its file leaves to its mate."""
+    module = gear.module
+    if module is None and gear.pitch_radius is None:
+        module = cylindrical(mate)["normal_module"]
+    helix = first_given(gear.helix_angle, gear.spiral_angle, mate.helix_angle, mate.spiral_angle)
+    width = first_given(gear.face_width, mate.face_width)
+    return gear.model_copy(update={"module": module, "helix_angle": helix, "face_width": width})
 
 
 def cylindrical(gear: Gear) -> dict[str, Any]:

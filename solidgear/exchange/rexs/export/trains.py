@@ -8,13 +8,20 @@ import numpy as np
 
 from solidgear.core import Scene
 from solidgear.exchange.rexs.document import Component
-from solidgear.exchange.rexs.export.gears import add_flanks, bevel, cylindrical, write_stiffness
+from solidgear.exchange.rexs.export.gears import (
+    add_flanks,
+    bevel,
+    cylindrical,
+    with_mate,
+    write_stiffness,
+)
 from solidgear.exchange.rexs.export.parts import Parts, attribute_of
 from solidgear.exchange.rexs.export.planets import SunPlace, add_stage
 from solidgear.exchange.rexs.export.shafts import add_points, add_shaft, forces
 from solidgear.exchange.rexs.planets import pins_name
 from solidgear.exchange.rexs.rest import key_of
 from solidgear.trains.assembly.layout import contacts, places, rotor_torques, senses
+from solidgear.trains.file.gears import Gear
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import Stage
@@ -60,11 +67,25 @@ class TrainParts:
         axes, origin = self.places[shaft]
         return origin + axes @ np.array([0.0, y, 0.0])
 
-    def _add_gear(self, shaft: str, port: str, kind: str, pressure_angle: float | None) -> int:
-        """Add a gear with its flanks at a lumped point; return its number."""
+    def _gear(self, shaft: str, port: str) -> Gear:
+        return self.train.shafts[shaft].gears[port]
+
+    def _add_gear(
+        self,
+        shaft: str,
+        port: str,
+        kind: str,
+        pressure_angle: float | None,
+        mate: Gear | None = None,
+    ) -> int:
+        """Add a gear with its flanks at a lumped point, with what its file leaves to its mate; return
+        its number.
+        """
         if (shaft, port) in self.gears:
             return self.gears[shaft, port]
-        gear, scene = self.train.shafts[shaft].gears[port], self.train.shafts[shaft].scene
+        gear, scene = self._gear(shaft, port), self.train.shafts[shaft].scene
+        if kind == "cylindrical_gear" and mate is not None:
+            gear = with_mate(gear, mate)
         place = next(p for p in scene.ports if p.name == port)
         number = self.parts.add(
             kind,
@@ -89,9 +110,10 @@ class TrainParts:
         mesh, parts = pair.mesh, self.parts
         parallel = mesh.shaft_angle == 0
         kind = "cylindrical" if parallel else "bevel"
+        ends = [*zip(pair.shafts, pair.ports)]
         gears = [
-            self._add_gear(shaft, port, f"{kind}_gear", mesh.pressure_angle)
-            for shaft, port in zip(pair.shafts, pair.ports)
+            self._add_gear(*end, f"{kind}_gear", mesh.pressure_angle, self._gear(*mate))
+            for end, mate in zip(ends, reversed(ends))
         ]
         name = key_of({"name": mesh.name, "between": mesh.between}, 0)
         number = parts.add(f"{kind}_stage", name, parts.unit)
