@@ -196,7 +196,9 @@ def _with_teeth(assembly: Assembly, driver: Pair, backlash: Quantity, error: Qua
         pair.mesh.with_changes(**changes) if pair.name == driver.name else pair.mesh
         for pair in assembly.train.pairs
     ]
-    return assembly.with_train(assembly.train.with_changes(meshes=tuple(meshes)))
+    solved = assembly.train.solved_meshes
+    train = assembly.train.with_changes(meshes=tuple(meshes))
+    return assembly.with_train(train.with_solved_meshes(solved))
 
 
 def _read(option: str, text: Quantity, dimension: str) -> float | None:

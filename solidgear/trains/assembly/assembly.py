@@ -483,11 +483,14 @@ class Assembly:
 
     @property
     def data_cautions(self) -> tuple[str, ...]:
-        """Sentences on meshes, gears, shafts that take the same space, and the housing."""
+        """Sentences on meshes, teeth whose contact was solved, gears, shafts that take the same space,
+        and the housing.
+        """
         sentences = []
         for name, contact in self.contacts.items():
             head = f"{name}: " if len(self.contacts) > 1 else ""
             sentences += [head + text for text in contact.cautions]
+        sentences += self.train.solved_meshes.cautions
         sentences += gear_cautions(self.train, self.contacts)
         sentences += map(str, overlaps(self.train, self.scenes, self.places))
         for side, shaft in self.train.shafts.items():
