@@ -18,10 +18,12 @@ from solidgear.core import (
     Quantity,
     Scene,
     SolidgearError,
+    number_cautions,
 )
 from solidgear.core.body import as_supports
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import static_bars
+from solidgear.core.judge.cautions import AT_REST
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
@@ -78,7 +80,8 @@ def stiffness(
                 reason = str(error)
         statics = condense(body, loaded, names if len(names) > 1 else names[0])
         open_ = open_ranges(loaded, body)
-        judged = Judged(loaded, body, settled, bars, reason, cautions(loaded, body), open_)
+        said = [*cautions(loaded, body), *number_cautions(loaded, AT_REST, body.fidelity)]
+        judged = Judged(loaded, body, settled, bars, reason, said, open_)
         return stiffness_sheet(statics, judged, units)
 
     present(study, run)

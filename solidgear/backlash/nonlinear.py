@@ -149,7 +149,7 @@ def nonlinear(
         over_force=study.over_force(judged[0], forces, progress) if forces else (),
         runs=tuple(speed_run(judged[0], ramp, progress) for ramp in ramps),
     )
-    cautions = [*unit_slips(assembly), *assembly.cautions]
+    cautions = [*unit_slips(assembly), *assembly.cautions(*first)]
     if assembly.train.planetary:
         cautions.append("teeth of planets are springs that never part")
     cautions += _beside_torque(assembly, mean_force)

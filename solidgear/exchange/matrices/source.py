@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -24,6 +24,7 @@ from solidgear.core import (
     load,
     nearest,
     rubin,
+    seat_cautions,
     show,
 )
 from solidgear.core.body import Supports
@@ -197,7 +198,8 @@ def _of_scene(scene: Scene, wanted: Wanted, options: dict) -> PortMatrices:
     if not isinstance(model, str):
         raise SolidgearError("a shaft has one model, such as timoshenko; several are for trains")
     supports = as_supports(scene) if wanted.bearings else masses_alone(scene)
-    return _of_shaft(build(scene, model, **options), supports, wanted, scene.name)
+    matrices = _of_shaft(build(scene, model, **options), supports, wanted, scene.name)
+    return replace(matrices, cautions=tuple(seat_cautions(scene, model)))
 
 
 def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> PortMatrices:
@@ -275,7 +277,10 @@ def _of_train(train: Train, wanted: Wanted, options: dict) -> PortMatrices:
     ]
     losses = assembly.loss_factors()
     chosen_ends = {end: end for end in chosen}
-    return port_coordinates(system, chosen_ends, wanted.most_modes, losses, None, train.name, notes)
+    matrices = port_coordinates(
+        system, chosen_ends, wanted.most_modes, losses, None, train.name, notes
+    )
+    return replace(matrices, cautions=assembly.cautions_at_rest(*by_shaft.values()))
 
 
 def _of_system(

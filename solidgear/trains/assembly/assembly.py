@@ -30,6 +30,7 @@ from solidgear.core import (
     pinned,
     read_tolerance,
     rubin,
+    seat_cautions,
     show,
 )
 from solidgear.core.bounds.refining import Meshed, refined
@@ -468,10 +469,9 @@ class Assembly:
         assembly.chosen_at_rest = set(self.chosen_at_rest)
         return assembly
 
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """Sentences on data that do not fit together but can be solved, and on bearings without
-        load.
+    def cautions(self, *models: str) -> tuple[str, ...]:
+        """Return sentences to be read before numbers of moving shafts by models are used: those at
+        rest, and on bearings without load.
         """
         unloaded = [
             f"bearing {end} carries no load at {self.train.point.label}, so it has no stiffness "
@@ -479,12 +479,12 @@ class Assembly:
             for end in self.train.unloaded
             if self.train.point is not None
         ]
-        return (*self.data_cautions, *unloaded)
+        return (*self.cautions_at_rest(*models), *unloaded)
 
-    @property
-    def data_cautions(self) -> tuple[str, ...]:
-        """Sentences on meshes, teeth whose contact was solved, gears, shafts that take the same space,
-        and the housing.
+    def cautions_at_rest(self, *models: str) -> tuple[str, ...]:
+        """Return sentences to be read before numbers of shafts at rest by models, as of
+        :meth:`models_by_shaft`, are used: on meshes, teeth whose contact was solved, gears, shafts
+        that take the same space, the housing, and with models on the seats of their bodies.
         """
         sentences = []
         for name, contact in self.contacts.items():
@@ -496,7 +496,12 @@ class Assembly:
         for side, shaft in self.train.shafts.items():
             if shaft.matrices is not None:
                 sentences += matrices_cautions(side, shaft.matrices, self.scenes[side])
-        return (*sentences, *housing_cautions(self.train, self.places))
+        sentences += housing_cautions(self.train, self.places)
+        for side, model in self.models_by_shaft(models).items() if models else ():
+            head = "" if self.train.is_one_shaft else f"the {side}: "
+            body = model.rpartition("/")[2]  # a lumped shaft rests on it
+            sentences += [head + text for text in seat_cautions(self.scenes[side], body)]
+        return tuple(sentences)
 
     @property
     def solids(self) -> tuple[str, ...]:

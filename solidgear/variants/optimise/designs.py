@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any
 
-from solidgear.core import SolidgearError, Source, read_tolerance, spin_caution
+from solidgear.core import SolidgearError, Source, number_cautions, read_tolerance
 from solidgear.variants.optimise.wish import FIRST, Rows
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
@@ -80,8 +80,8 @@ def scene_designs(
         ]
         return [*names_at_rest, *modes_of_row]
 
-    at_rest = tuple(spin_caution(base, dict.fromkeys(names)))
-    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of, at_rest)
+    cautions = tuple(number_cautions(base, dict.fromkeys(names), model or ""))
+    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of, cautions)
 
 
 #: kinds of numbers of a shaft that have columns of their own
@@ -139,7 +139,8 @@ def train_designs(
     if every_point:
         solved += f", at the worst of {points} operating points"
     unbarred = "none: rows of a train have no error bars"
-    return Designs(task, usual.title or usual.name, points, solved, unbarred, _numbers_of_train)
+    title = usual.title or usual.name
+    return Designs(task, title, points, solved, unbarred, _numbers_of_train, task.cautions)
 
 
 def _kinds(task: TrainTask, names: Sequence[str]) -> tuple[str, ...]:
