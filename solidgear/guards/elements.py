@@ -91,7 +91,9 @@ def rigid_seats(probe: Probe) -> Notices:
 
 
 def seats_on_joints(probe: Probe) -> Notices:
-    """Yield notices on rigid seats whose end decides numbers, a much softer material under it."""
+    """Yield notices on rigid seats whose end decides numbers, a much softer material under it, and on
+    faces that are held.
+    """
     for sentence in seat_cautions(probe.whole):
         yield Notice("caution", solids(), sentence)
 
