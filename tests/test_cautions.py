@@ -12,6 +12,7 @@ from validation.agree.relation import failed
 FOUND = Path(__file__).parent / "found"
 JOINT, DISC = FOUND / "shafts/seat_to_joint.toml", FOUND / "spin/disc_at_speed.toml"
 RIM = FOUND / "teeth/rim_1.4m/t.toml"
+BEAMS = ("--pinion", "timoshenko", "--gear", "timoshenko")
 ON_SEAT = "where exactly the seat end of B at a change of material lies"
 AT_SPEED = "at 12000 rpm spin moves bending 1 by -27 %"
 ON_FACE = "A holds the mean motion of the start face, which is free to dish"
@@ -29,11 +30,11 @@ def said_by(run, tmp_path, *words):
 @pytest.mark.parametrize(
     "words",
     [
-        ("stiffness", "-f", "harmonic"),
-        ("modes", "-f", "harmonic"),
+        ("stiffness", "-f", "harmonic", "--set", "order=3"),
+        ("modes", "-f", "harmonic", "--set", "order=3"),
         ("deflect", "-f", "harmonic", "--load", "z=1 kN"),
-        ("sensitivities", "-f", "harmonic", "--of", "C_zz", "--by", "bearing.1.scale"),
-        ("sweep", "-f", "harmonic", "--vary", "segment.shaft.length=60 mm"),
+        ("sensitivities", "-f", "harmonic", "--of", "C_zz", "--by", "material.E"),
+        ("sweep", "-f", "harmonic", "--set", "order=3", "--vary", "segment.shaft.length=60 mm"),
         ("sweep", "-f", "harmonic", "--vary", "bearing.A.scale=1"),
         ("export", "--model", "harmonic"),
     ],
@@ -53,9 +54,9 @@ def test_a_beam_has_no_end_of_a_seat(run, tmp_path):
     "words",
     [
         ("deflect", "-f", "timoshenko"),
-        ("system-modes", "-f", "timoshenko"),
-        ("response", "-f", "timoshenko"),
-        ("sweep", "-f", "timoshenko", "--vary", "operation.torque=300", "--ask", "deflect"),
+        ("system-modes", *BEAMS),
+        ("response", *BEAMS),
+        ("sweep", *BEAMS, "--vary", "operation.torque=300", "--ask", "deflect"),
         ("export", "--model", "timoshenko"),
     ],
     ids=lambda words: words[0],
@@ -69,7 +70,7 @@ def test_teeth_on_a_thin_rim_are_said_wherever_their_stiffness_counts(words, run
 def test_a_face_that_is_held_dishes_in_solids_alone():
     bar = {
         "material": "steel",
-        "segment": [{"kind": "cylinder", "length": "100 mm", "diameter": "100 mm"}],
+        "segment": [{"kind": "cylinder", "name": "bar", "length": "100 mm", "diameter": "100 mm"}],
         "bearing": [{"name": "A", "face": "start", "seat_width": "20 mm", "hold": "clamped"}],
         "port": {"name": "tip", "position": "90 mm", "span": ["80 mm", "100 mm"]},
     }

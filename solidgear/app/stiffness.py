@@ -23,7 +23,6 @@ from solidgear.core import (
 from solidgear.core.body import as_supports
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import static_bars
-from solidgear.core.judge.cautions import AT_REST
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
@@ -80,7 +79,7 @@ def stiffness(
                 reason = str(error)
         statics = condense(body, loaded, names if len(names) > 1 else names[0])
         open_ = open_ranges(loaded, body)
-        said = [*cautions(loaded, body), *number_cautions(loaded, AT_REST, body.fidelity)]
+        said = [*cautions(loaded, body), *number_cautions(loaded, model=body.fidelity)]
         judged = Judged(loaded, body, settled, bars, reason, said, open_)
         return stiffness_sheet(statics, judged, units)
 

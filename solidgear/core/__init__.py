@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
     from solidgear.core.judge.answer import read_tolerance
-    from solidgear.core.judge.cautions import number_cautions, seat_cautions
+    from solidgear.core.judge.cautions import number_cautions
     from solidgear.core.judge.change import BarredMode
     from solidgear.core.judge.deviations import WITHIN, gap_verdict
     from solidgear.core.judge.open_numbers import OpenNumbers
@@ -129,7 +129,6 @@ __all__ = [
     "read_tolerance",
     "rotation",
     "rubin",
-    "seat_cautions",
     "settle",
     "show",
     "size",
@@ -160,7 +159,6 @@ _WHERE = {
     "gap_verdict": "solidgear.core.judge.deviations",
     "read_tolerance": "solidgear.core.judge.answer",
     "number_cautions": "solidgear.core.judge.cautions",
-    "seat_cautions": "solidgear.core.judge.cautions",
     "BarredMode": "solidgear.core.judge.change",
     "OpenNumbers": "solidgear.core.judge.open_numbers",
     "change": "solidgear.core.judge.quantities",

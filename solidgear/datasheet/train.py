@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from solidgear.core import OpenNumbers, seat_cautions
+from solidgear.core import OpenNumbers, number_cautions
 from solidgear.datasheet.assumed import absent_notch, assumed, assumed_at_rest
 from solidgear.datasheet.at_rest import (
     bearing_facts,
@@ -96,7 +96,7 @@ def train_sheet(
 
 def _on_seats_and_teeth(assembly: Assembly) -> Iterator[Remark]:
     """Yield cautions on seats of shafts, and on teeth whose contact gave a stiffness."""
-    if any(seat_cautions(scene, JUDGE) for scene in assembly.scenes.values()):
+    if any(number_cautions(scene, model=JUDGE) for scene in assembly.scenes.values()):
         yield Remark("caution seat")
     if assembly.train.solved_meshes.cautions:
         yield Remark("caution teeth")

@@ -15,7 +15,7 @@ from solidgear.core import (
     SolidgearError,
     change,
     listed,
-    seat_cautions,
+    number_cautions,
     without_axis,
 )
 from solidgear.core.elements import SOLVED_AS
@@ -94,7 +94,7 @@ def seats_on_joints(probe: Probe) -> Notices:
     """Yield notices on rigid seats whose end decides numbers, a much softer material under it, and on
     faces that are held.
     """
-    for sentence in seat_cautions(probe.whole):
+    for sentence in number_cautions(probe.whole):
         yield Notice("caution", solids(), sentence)
 
 

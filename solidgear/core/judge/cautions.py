@@ -32,12 +32,12 @@ AT_REST: Mapping[str, None] = dict.fromkeys(str(q) for q in QUANTITIES if not q.
 
 def number_cautions(
     scene: Scene,
-    numbers: Mapping[str, float | None] = SHOWN,
+    numbers: Mapping[str, float | None] = AT_REST,
     model: str = "",
     speed: float | None = None,
 ) -> list[str]:
     """Return sentences to be read before numbers of a scene are used, by their names with relative
-    error bars, None where there is none; by a solid unless a model is named, and at the speed
+    error bars, None where there is none, by default static ones; by a solid unless a model is named, and at the speed
     (rad/s) of the scene unless one is given.
 
     Examples
@@ -48,10 +48,10 @@ def number_cautions(
     """
     if not numbers:
         return []
-    return [*seat_cautions(scene, model), *spin_caution(scene, numbers, speed)]
+    return [*_on_seats(scene, model), *spin_caution(scene, numbers, speed)]
 
 
-def seat_cautions(scene: Scene, model: str = "") -> list[str]:
+def _on_seats(scene: Scene, model: str) -> list[str]:
     """Return sentences on what the seats of a solid do: those held by a face, and rigid ones that end
     where details of the drawing decide all numbers.
     """

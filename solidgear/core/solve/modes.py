@@ -23,6 +23,7 @@ from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.threads import pinned
 from solidgear.core.named import NamedModes
+from solidgear.core.registry import addition
 from solidgear.core.scene import Scene
 from solidgear.core.solve.coupling import decoupled
 from solidgear.core.solve.eigen import Raw
@@ -112,10 +113,9 @@ class ModeSet(NamedModes[Mode], Displayed):
         """Sentences on what the frequencies of a scene leave out, such as the speed that it states;
         none of a body on bearings of no scene.
         """
-        if self.scene is None:
+        number_cautions = addition("remark", "numbers")  # which solves modes itself
+        if self.scene is None or number_cautions is None:
             return ()
-        from solidgear.core.judge.cautions import number_cautions  # it solves modes itself
-
         names = [str(mode.name) for mode in self.modes if mode.frequency_hz > 0]
         return tuple(number_cautions(self.scene, dict.fromkeys(names), self.fidelity))
 

@@ -23,8 +23,8 @@ from solidgear.core import (
     listed,
     load,
     nearest,
+    number_cautions,
     rubin,
-    seat_cautions,
     show,
 )
 from solidgear.core.body import Supports
@@ -199,7 +199,7 @@ def _of_scene(scene: Scene, wanted: Wanted, options: dict) -> PortMatrices:
         raise SolidgearError("a shaft has one model, such as timoshenko; several are for trains")
     supports = as_supports(scene) if wanted.bearings else masses_alone(scene)
     matrices = _of_shaft(build(scene, model, **options), supports, wanted, scene.name)
-    return replace(matrices, cautions=tuple(seat_cautions(scene, model)))
+    return replace(matrices, cautions=tuple(number_cautions(scene, model=model)))
 
 
 def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> PortMatrices:

@@ -30,7 +30,6 @@ from solidgear.core import (
     pinned,
     read_tolerance,
     rubin,
-    seat_cautions,
     show,
 )
 from solidgear.core.bounds.refining import Meshed, refined
@@ -39,9 +38,8 @@ from solidgear.core.reduction.craig_bampton import craig_bampton
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.core.system.parts import Inertia, Part, Placed, RigidBody
-from solidgear.trains.assembly.gear_bodies import gear_cautions
+from solidgear.trains.assembly.cautions import train_cautions
 from solidgear.trains.assembly.housing import (
-    housing_cautions,
     housing_losses,
     housing_part,
     links_on_housing,
@@ -52,7 +50,6 @@ from solidgear.trains.assembly.local import local_teeth, mesh_port
 from solidgear.trains.assembly.matrices_body import (
     MATRICES,
     matrices_body,
-    matrices_cautions,
 )
 from solidgear.trains.assembly.mesh_errors import (
     MeshErrors,
@@ -74,7 +71,6 @@ from solidgear.trains.assembly.shaft import (
     lumped,
     names_from,
 )
-from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
@@ -486,22 +482,8 @@ class Assembly:
         :meth:`models_by_shaft`, are used: on meshes, teeth whose contact was solved, gears, shafts
         that take the same space, the housing, and with models on the seats of their bodies.
         """
-        sentences = []
-        for name, contact in self.contacts.items():
-            head = f"{name}: " if len(self.contacts) > 1 else ""
-            sentences += [head + text for text in contact.cautions]
-        sentences += self.train.solved_meshes.cautions
-        sentences += gear_cautions(self.train, self.contacts)
-        sentences += map(str, overlaps(self.train, self.scenes, self.places))
-        for side, shaft in self.train.shafts.items():
-            if shaft.matrices is not None:
-                sentences += matrices_cautions(side, shaft.matrices, self.scenes[side])
-        sentences += housing_cautions(self.train, self.places)
-        for side, model in self.models_by_shaft(models).items() if models else ():
-            head = "" if self.train.is_one_shaft else f"the {side}: "
-            body = model.rpartition("/")[2]  # a lumped shaft rests on it
-            sentences += [head + text for text in seat_cautions(self.scenes[side], body)]
-        return tuple(sentences)
+        by_shaft = self.models_by_shaft(models) if models else {}
+        return train_cautions(self.train, self.contacts, self.scenes, self.places, by_shaft)
 
     @property
     def solids(self) -> tuple[str, ...]:
