@@ -217,7 +217,7 @@ def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> Port
     notes.append(
         "held: stiffness of its bearings is included" if springs else "free: without its bearings"
     )
-    if supports.inertia is not None:
+    if supports.inertia is not None and np.any(supports.inertia):
         notes.append("rigid masses on it are included")
     losses = {SHAFT: wanted.loss} if wanted.loss else None
     swirl: np.ndarray | None = None
