@@ -80,6 +80,7 @@ ADDITIONS = {
     },
     # remarks beside the numbers of one shaft
     "remark": {
+        "numbers": "core.judge.cautions:number_cautions",
         "cautions": "guards.check:cautions",
         "open ranges": "variants.budget.budget:beside",
         "seats": "guards.bearings:misfits",

@@ -213,7 +213,7 @@ def test_an_answer_cautions_that_the_drawing_decides():
     cautioned = "where exactly the seat end of B at a change of material lies"
     joint = str(SHAFTS / "seat_to_joint.toml")
     done = command("answer", joint, "--ask", "C_thy", "--tol", "0.5", "--json")
-    assert done.exit_code == 0 and cautioned in done.stderr
+    assert done.exit_code == 0 and cautioned in done.stdout
     off = command("answer", str(SHAFTS / "seat_0.1_mm_off.toml"), "--ask", "C_thy", "--tol", "0.5")
     assert off.exit_code == 0 and "where exactly" not in off.stderr
 

@@ -162,7 +162,7 @@ def test_a_housing_of_matrices_moves_like_them(tmp_path):
     assert found.rigid == 1
     assert found.frequency_hz[1:] == pytest.approx(exact[1:], rel=1e-9)
     moved = "'middle.b1' of the housing lies 2 mm from that bearing"
-    assert any(moved in text for text in assembly.cautions)
+    assert any(moved in text for text in assembly.cautions())
     modes = train_modes(assembly, RIGID, max_frequency=1500.0).modes
     assert any("housing elastic" in mode.name for mode in modes)
 

@@ -20,7 +20,7 @@ def found(train):
     assembly = Assembly(train)
     told = overlaps(assembly.train, assembly.scenes, assembly.places)
     assert [str(one) for one in told] == [
-        line for line in assembly.cautions if "same space" in line
+        line for line in assembly.cautions() if "same space" in line
     ]
     return told
 

@@ -19,7 +19,7 @@ from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import columns as ranges
 from solidgear.show.open_words import remark
 from solidgear.show.options import CaseName, SceneFile, Shown, relative
-from solidgear.show.remarks import bearing_cautions, end_cautions, load, open_ranges
+from solidgear.show.remarks import bearing_cautions, load, open_ranges
 from solidgear.show.settled import sentences
 from solidgear.show.sheet import Sheet, Terminal, present
 from solidgear.show.table import Column, Table, text
@@ -69,7 +69,7 @@ def answer(
 
         check_ending(picture)  # before anything is solved
     loaded = load(scene, case)
-    for sentence in (*bearing_cautions(loaded), *end_cautions(loaded)):
+    for sentence in bearing_cautions(loaded):
         print(caution(sentence), file=sys.stderr)
     units = units_named(run.units)
 

@@ -17,7 +17,7 @@ from solidgear.core import (
     SolidgearError,
     bars_of_modes,
     listed,
-    spin_caution,
+    number_cautions,
     without_axis,
 )
 from solidgear.core.errors import NoBounds
@@ -105,7 +105,9 @@ def modes(
                 *cautions(loaded, body),
                 *cut_short(mode_set.modes, asked, highest_hz, option="-n"),
                 *(mixture.sentence for mixture in mixtures(mode_set)),
-                *spin_caution(loaded, {name: bars.get(name) for name in elastic}, turns),
+                *number_cautions(
+                    loaded, {name: bars.get(name) for name in elastic}, body.fidelity, turns
+                ),
             ],
             open_ranges(loaded),
         )

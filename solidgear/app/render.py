@@ -10,7 +10,7 @@ from typing import Annotated
 
 import typer
 
-from solidgear.core import LADDER, SolidgearError, spin_caution
+from solidgear.core import LADDER, SolidgearError, number_cautions
 from solidgear.core import modes as solve
 from solidgear.show.command import command
 from solidgear.show.folder import prepare
@@ -53,12 +53,13 @@ def render(
         mode_set = solve(body, loaded, max(loaded.ask.modes, 10))
         drawn.append(Drawn(body, mode_set, LADDER[chosen.name].title))
     shown = [m.name for m in drawn[0].modes.modes if turn is not None or m.name == mode]
-    for sentence in spin_caution(loaded, dict.fromkeys(shown)):
+    cautions = number_cautions(loaded, dict.fromkeys(shown), model.name)
+    for sentence in cautions:
         print(f"caution: {sentence}", file=sys.stderr)
     if turn is None:
         print(render_mode(drawn[0], mode, out))
         return
-    path, sentence = turn_modes(drawn, turn, loaded.title or loaded.name, mode)
+    path, sentence = turn_modes(drawn, turn, loaded.title or loaded.name, mode, cautions)
     if sentence:
         print(f"caution: {sentence}", file=sys.stderr)
     print(path)
@@ -86,7 +87,9 @@ def render_mode(drawn: Drawn, name: str, path: Path) -> Path:
     return result.path
 
 
-def turn_modes(drawn: Sequence[Drawn], path: Path, title: str, name: str) -> tuple[Path, str]:
+def turn_modes(
+    drawn: Sequence[Drawn], path: Path, title: str, name: str, cautions: Sequence[str] = ()
+) -> tuple[Path, str]:
     """Write a page of all modes to turn; return its path and why it has no picture for print."""
     prepare(path.parent)
     models: list[Turned] = []
@@ -100,4 +103,4 @@ def turn_modes(drawn: Sequence[Drawn], path: Path, title: str, name: str) -> tup
             still = data_uri("mode", picture) or ""
         except SolidgearError as error:
             sentence = f"no picture for print in {path.name}: {error}"
-    return Turning(tuple(models), title, name).write(path, still=still), sentence
+    return Turning(tuple(models), title, name, cautions).write(path, still=still), sentence

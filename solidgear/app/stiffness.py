@@ -18,6 +18,7 @@ from solidgear.core import (
     Quantity,
     Scene,
     SolidgearError,
+    number_cautions,
 )
 from solidgear.core.body import as_supports
 from solidgear.core.errors import NoBounds
@@ -78,7 +79,8 @@ def stiffness(
                 reason = str(error)
         statics = condense(body, loaded, names if len(names) > 1 else names[0])
         open_ = open_ranges(loaded, body)
-        judged = Judged(loaded, body, settled, bars, reason, cautions(loaded, body), open_)
+        said = [*cautions(loaded, body), *number_cautions(loaded, model=body.fidelity)]
+        judged = Judged(loaded, body, settled, bars, reason, said, open_)
         return stiffness_sheet(statics, judged, units)
 
     present(study, run)

@@ -149,7 +149,7 @@ def nonlinear(
         over_force=study.over_force(judged[0], forces, progress) if forces else (),
         runs=tuple(speed_run(judged[0], ramp, progress) for ramp in ramps),
     )
-    cautions = [*unit_slips(assembly), *assembly.cautions]
+    cautions = [*unit_slips(assembly), *assembly.cautions(*first)]
     if assembly.train.planetary:
         cautions.append("teeth of planets are springs that never part")
     cautions += _beside_torque(assembly, mean_force)
@@ -196,7 +196,9 @@ def _with_teeth(assembly: Assembly, driver: Pair, backlash: Quantity, error: Qua
         pair.mesh.with_changes(**changes) if pair.name == driver.name else pair.mesh
         for pair in assembly.train.pairs
     ]
-    return assembly.with_train(assembly.train.with_changes(meshes=tuple(meshes)))
+    solved = assembly.train.solved_meshes
+    train = assembly.train.with_changes(meshes=tuple(meshes))
+    return assembly.with_train(train.with_solved_meshes(solved))
 
 
 def _read(option: str, text: Quantity, dimension: str) -> float | None:

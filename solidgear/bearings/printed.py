@@ -70,5 +70,7 @@ BEARING = (
         keys={"scene": str, "bearings": list[FACTS]},  # type: ignore[valid-type]
         sometimes={"case": str, "cases": list[OVER_POINTS]},  # type: ignore[valid-type]
     ),
-    Printed(keys={"train": str, "bearings": list[OVER_POINTS]}),  # type: ignore[valid-type]
+    Printed(
+        keys={"train": str, "bearings": list[OVER_POINTS], "cautions": list[str]}  # type: ignore[valid-type]
+    ),
 )

@@ -49,16 +49,24 @@ def scene_sheet(
     return _sheet(scene, blocks, data)
 
 
-def train_sheet(train: str, bearings: Sequence[LivesOverPoints]) -> Sheet:
+def train_sheet(
+    train: str, bearings: Sequence[LivesOverPoints], cautions: Sequence[str] = ()
+) -> Sheet:
     """Return the sheet of the bearings of a train: lives at all operating points, and over the duty
     table.
     """
     blocks = [*_over_points(bearings), *_duty(bearings)]
-    data = {"train": train, "bearings": [bearing.as_dict() for bearing in bearings]}
-    return _sheet(train, blocks, data)
+    rows = [bearing.as_dict() for bearing in bearings]
+    data = {"train": train, "bearings": rows, "cautions": [*cautions]}
+    return _sheet(train, blocks, data, cautions)
 
 
-def _sheet(name: str, blocks: Sequence[str | Table], data: Mapping[str, Any]) -> Sheet:
+def _sheet(
+    name: str,
+    blocks: Sequence[str | Table],
+    data: Mapping[str, Any],
+    cautions: Sequence[str] = (),
+) -> Sheet:
     return Sheet(
         name="bearings",
         title=f"{name}: bearings",
@@ -66,7 +74,10 @@ def _sheet(name: str, blocks: Sequence[str | Table], data: Mapping[str, Any]) ->
         tables=[block for block in blocks if isinstance(block, Table)],
         data=data,
         notes=[block for block in blocks if isinstance(block, str)],
-        terminal=Terminal(heading=blocks, tables=(), closing=(), lines="whole"),
+        cautions=cautions,
+        terminal=Terminal(
+            heading=blocks, tables=(), closing=[*map(caution, cautions)], lines="whole"
+        ),
     )
 
 

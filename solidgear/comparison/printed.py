@@ -49,5 +49,6 @@ CHART = Printed(
         "setup": Any,
         "seconds": float,
         "rows": list[dict[str, Any]],
+        "cautions": list[str],
     }
 )

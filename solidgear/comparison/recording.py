@@ -19,7 +19,7 @@ from solidgear.core import (
     SolidgearError,
     Solution,
     WhereRecord,
-    spin_caution,
+    number_cautions,
 )
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.completeness import completeness, cut_short, split_apart
@@ -122,10 +122,11 @@ def recorded(scene: Scene, findings: Findings) -> Record:
     if out.lumped and reference:
         _add_lumped(out, solutions[reference], scene)
     out.warnings = _warnings(solutions, guards, out.models)
-    if listed := solutions.get(reference or next(reversed(solutions), "")):
+    by = reference or next(reversed(solutions), "")
+    if listed := solutions.get(by):
         error_bars = {str(q): bar.width for q, bar in listed.error_bars.get(SCENE, {}).items()}
         shown = [str(mode.name) for mode in listed.modes.modes if mode.frequency_hz > 0]
-        out.warnings += spin_caution(scene, {name: error_bars.get(name) for name in shown})
+        out.warnings += number_cautions(scene, {n: error_bars.get(n) for n in shown}, by)
         n = max(scene.ask.modes, ENOUGH)
         out.warnings += cut_short(listed.modes.modes, n, scene.ask.max_frequency)
     return out

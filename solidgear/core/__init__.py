@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from solidgear.core.errors import SceneError, SolidgearError, listed, near, nearest, show
     from solidgear.core.frames import DOF_NAMES, rotation
     from solidgear.core.judge.answer import read_tolerance
-    from solidgear.core.judge.at_rest import spin_caution
+    from solidgear.core.judge.cautions import number_cautions
     from solidgear.core.judge.change import BarredMode
     from solidgear.core.judge.deviations import WITHIN, gap_verdict
     from solidgear.core.judge.open_numbers import OpenNumbers
@@ -124,6 +124,7 @@ __all__ = [
     "name_of_source",
     "near",
     "nearest",
+    "number_cautions",
     "pinned",
     "read_tolerance",
     "rotation",
@@ -131,7 +132,6 @@ __all__ = [
     "settle",
     "show",
     "size",
-    "spin_caution",
     "synthesise",
     "whole",
     "without_axis",
@@ -158,7 +158,7 @@ _WHERE = {
     "WITHIN": "solidgear.core.judge.deviations",
     "gap_verdict": "solidgear.core.judge.deviations",
     "read_tolerance": "solidgear.core.judge.answer",
-    "spin_caution": "solidgear.core.judge.at_rest",
+    "number_cautions": "solidgear.core.judge.cautions",
     "BarredMode": "solidgear.core.judge.change",
     "OpenNumbers": "solidgear.core.judge.open_numbers",
     "change": "solidgear.core.judge.quantities",

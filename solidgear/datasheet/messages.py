@@ -333,6 +333,14 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Frequencies are those at rest; how far spin moves them is not known.",
         "Frequenzen gelten im Stillstand; wie weit die Drehung sie verschiebt, ist nicht bekannt.",
     ),
+    "caution seat": (
+        "How a seat holds the shaft decides numbers: see solidgear check.",
+        "Wie ein Sitz die Welle hält, bestimmt die Zahlen: siehe solidgear check.",
+    ),
+    "caution teeth": (
+        "The stiffness of the teeth in contact is doubtful: see solidgear contact.",
+        "Die Steifigkeit der Zähne im Eingriff ist fraglich: siehe solidgear contact.",
+    ),
     "caution speed": (
         "The {order} meets {mode} at {critical}, {off} from the speed.",
         "Nur {off} neben der Drehzahl: {order} trifft bei {critical} auf {mode}.",

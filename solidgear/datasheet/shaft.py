@@ -9,7 +9,7 @@ from typing import Any
 
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.study import BearingFacts
-from solidgear.core import Scene, SolidgearError, load, without_axis
+from solidgear.core import Scene, SolidgearError, load, number_cautions, without_axis
 from solidgear.core.judge.at_rest import spin_moved
 from solidgear.datasheet.assumed import absent_notch, assumed, assumed_at_rest
 from solidgear.datasheet.at_rest import (
@@ -83,7 +83,14 @@ def shaft_sheet(
         speed=turning,
         assumed=tuple(assumed(scene, numbers.ranges)),
         absent={} if turning else {"speeds": Remark("absent speed")},
-        cautions=(*numbers.cautions(), *_at_rest(settled, numbers, turning)),
+        cautions=(
+            *numbers.cautions(),
+            *(
+                Remark("caution seat")
+                for _ in number_cautions(settled, model=numbers.trust.model)[:1]
+            ),
+            *_at_rest(settled, numbers, turning),
+        ),
     )
     if not scene.is_loaded:
         reason = Remark("absent load")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Callable, Iterator
 from dataclasses import replace
 
-from solidgear.core import OpenNumbers
+from solidgear.core import OpenNumbers, number_cautions
 from solidgear.datasheet.assumed import absent_notch, assumed, assumed_at_rest
 from solidgear.datasheet.at_rest import (
     bearing_facts,
@@ -62,8 +62,8 @@ def train_sheet(
 ) -> Datasheet:
     """Return the sheet of a train, at an operating point where it has one."""
     progress("natural frequencies")
-    moving = Assembly(settled_at(train, point) if point else train)
-    modes = train_modes(moving, *usual_models(train.shafts).values(), at_most=MODES)
+    settled = Assembly(settled_at(train, point) if point else train)
+    modes = train_modes(settled, *usual_models(train.shafts).values(), at_most=MODES)
     models = tuple(dict.fromkeys(modes.models.values()))
     # only meshes of harmonic shafts have an error bar in modes of a train
     listed = modes.modes
@@ -90,13 +90,21 @@ def train_sheet(
         ),
         assumed=tuple(_assumed(train)),
         absent={} if speed else {"speeds": Remark("absent train speed")},
-        cautions=tuple(caution_of_spin(modes.spin)),
+        cautions=(*_on_seats_and_teeth(settled), *caution_of_spin(modes.spin)),
     )
     if assembly is None or point is None:
         reason = Remark("absent operation")
         absent = {"figures": reason, "worst": reason, "motions": reason}
         return replace(sheet, absent=sheet.absent | absent)
     return _at_point(sheet, train, assembly, point, settings, progress)
+
+
+def _on_seats_and_teeth(assembly: Assembly) -> Iterator[Remark]:
+    """Yield cautions on seats of shafts, and on teeth whose contact gave a stiffness."""
+    if any(number_cautions(scene, model=JUDGE) for scene in assembly.scenes.values()):
+        yield Remark("caution seat")
+    if assembly.train.solved_meshes.cautions:
+        yield Remark("caution teeth")
 
 
 def _at_point(

@@ -176,6 +176,7 @@ def _sheet(matrices: PortMatrices, files: list[Path], units: str) -> Sheet:
     data = {
         "source": matrices.source,
         "notes": [*matrices.notes],
+        "cautions": [*matrices.cautions],
         "coordinates": matrices.coordinates,
         "positions": {name: place.tolist() for name, place in matrices.positions.items()},
         "units": units,
@@ -186,4 +187,12 @@ def _sheet(matrices: PortMatrices, files: list[Path], units: str) -> Sheet:
     notes = [*(f"{note[:1].upper()}{note[1:]}." for note in matrices.notes)]
     notes.append(f"Units of the file: {matrix_units(units).words}.")
     notes.append(f"Written: {', '.join(map(str, files))}")
-    return Sheet("export", matrices.source, "; ".join(facts) + ".", [table], data, notes=notes)
+    return Sheet(
+        "export",
+        matrices.source,
+        "; ".join(facts) + ".",
+        [table],
+        data,
+        notes=notes,
+        cautions=matrices.cautions,
+    )

@@ -9,6 +9,7 @@ EXPORT = (
         keys={
             "source": str,
             "notes": list[str],
+            "cautions": list[str],
             "coordinates": list[str],
             "positions": dict[str, tuple[float, float, float]],
             "units": str,

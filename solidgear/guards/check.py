@@ -57,6 +57,7 @@ NOT_IN_COMPARISONS = (
     "memory",
     "renderer",
     "spin",
+    "seats_on_joints",
 )
 #: guards that compare beams and lumped models with a light solid
 COMPARES = ("beam_against_solid", "lumped_against_solid")
@@ -71,6 +72,7 @@ NOT_HEARD_ALONE = (
     "frequency_range",
     "doubtful_data",
     "spin",
+    "seats_on_joints",
 )
 #: guards on the mesh of one solid
 OF_A_MESH = (

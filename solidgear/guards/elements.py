@@ -9,8 +9,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core import LADDER, Quantity, SolidgearError, change, listed, without_axis
-from solidgear.core.bounds.singular_places import undecided_ends
+from solidgear.core import (
+    LADDER,
+    Quantity,
+    SolidgearError,
+    change,
+    listed,
+    number_cautions,
+    without_axis,
+)
 from solidgear.core.elements import SOLVED_AS
 from solidgear.core.judge.quantities import in_words
 from solidgear.core.machine.memory import available_mb
@@ -84,10 +91,11 @@ def rigid_seats(probe: Probe) -> Notices:
 
 
 def seats_on_joints(probe: Probe) -> Notices:
-    """Yield notices on rigid seats whose end decides numbers, a much softer material under it."""
-    if not without_axis(probe.whole):
-        for sentence in undecided_ends(probe.scene):
-            yield Notice("caution", solids(), sentence)
+    """Yield notices on rigid seats whose end decides numbers, a much softer material under it, and on
+    faces that are held.
+    """
+    for sentence in number_cautions(probe.whole):
+        yield Notice("caution", solids(), sentence)
 
 
 # linear_elements.py: error in first bending over that of the quadratic element of the same shape at

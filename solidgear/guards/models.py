@@ -6,8 +6,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core import BEAM, COMPLIANCE, LADDER, SolidgearError, listed, spin_caution
+from solidgear.core import BEAM, COMPLIANCE, LADDER, SolidgearError, listed
 from solidgear.core.judge import deviations
+from solidgear.core.judge.at_rest import spin_caution
 from solidgear.core.judge.deviations import TIES
 from solidgear.core.judge.quantities import in_words
 from solidgear.core.meshing.corners import sharpest_corner

@@ -19,9 +19,9 @@ from solidgear.core import (
     as_supports,
     build,
     modes,
+    number_cautions,
     pinned,
     settle,
-    spin_caution,
 )
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import mode_bars
@@ -60,9 +60,8 @@ class Computed:
     @property
     def cautions(self) -> tuple[str, ...]:
         """Sentences on what the frequencies leave out."""
-        return tuple(
-            spin_caution(self.scene, {str(m.name): b for m, b in zip(self.modes, self.bars)})
-        )
+        bars = {str(mode.name): bar for mode, bar in zip(self.modes, self.bars)}
+        return tuple(number_cautions(self.scene, bars, self.model))
 
     def widths(self, springs: float) -> np.ndarray:
         """Return standard deviations (modes,) of logarithms of frequencies from those of the

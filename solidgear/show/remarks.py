@@ -14,7 +14,6 @@ from solidgear.core import (
     Source,
     addition,
     explained,
-    without_axis,
 )
 from solidgear.core import load as read
 from solidgear.core.loading import case_sentence, under_case
@@ -90,12 +89,3 @@ def bearing_cautions(scene: Scene) -> Iterator[str]:
         remark = addition("remark", name)
         if remark:
             yield from remark(scene)
-
-
-def end_cautions(scene: Scene) -> Iterator[str]:
-    """Yield cautions on rigid seats that end where details of a drawing decide numbers."""
-    if not without_axis(scene) and len({segment.material for segment in scene.segments}) > 1:
-        # start-up: for shafts of several materials alone
-        from solidgear.core.bounds.singular_places import undecided_ends
-
-        yield from undecided_ends(scene)

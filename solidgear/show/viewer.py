@@ -46,6 +46,7 @@ class Turning:
     models: tuple[Turned, ...]
     title: str = ""  #: of the page
     first: str = ""  #: name of the mode to open with; first bending by default
+    cautions: Sequence[str] = ()  #: sentences on what its frequencies leave out
 
     def write(self, path: str | os.PathLike, *, still: str = "") -> Path:
         """Write one self-contained page.
@@ -69,7 +70,9 @@ class Turning:
         from markupsafe import Markup
 
         return template("viewer_page.html").render(
-            title=self.title or "Mode shapes", viewer=Markup(_filled(self.packed, still))
+            title=self.title or "Mode shapes",
+            viewer=Markup(_filled(self.packed, still)),
+            cautions=self.cautions,
         )
 
     @cached_property
@@ -124,7 +127,7 @@ def turn(body: Body, modes: ModeSet, *others: tuple[Body, ModeSet]) -> Turning:
     models: list[Turned] = []
     for model_body, mode_set in ((body, modes), *others):
         models.append(turned(model_body, mode_set, like=models))
-    return Turning(tuple(models))
+    return Turning(tuple(models), cautions=modes.cautions)
 
 
 class Packed(NamedTuple):

@@ -37,6 +37,7 @@ from solidgear.trains.file.mesh_teeth import MeshTeeth, elasticity_of, gears_of,
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh, PlanetMeshes, Stage
+from solidgear.trains.file.solved_meshes import SolvedMeshes
 from solidgear.trains.file.tables import TEETH, ErrorTable, Mesh
 from solidgear.trains.file.tip_rules import tip_problems
 from solidgear.trains.file.tooth_fit import parting_teeth
@@ -306,29 +307,41 @@ def with_teeth(train: Train, carried: Carried, varies: str = "") -> Train:
     """Return a train whose meshes with ``stiffness = "teeth"`` have the numbers of their teeth where it
     is carried: the train itself, or one that differs in the shapes of flanks alone.
     """
-    meshes = [
-        _filled(carried, pair, mesh, pair.name == varies) if mesh.stiffness == TEETH else mesh
-        for pair, mesh in zip(train.pairs, train.meshes)
+    meshes, planetary, cautions = [*train.meshes], dict(train.planetary), list[str]()
+    for k, (pair, mesh) in enumerate(zip(train.pairs, train.meshes)):
+        if mesh.stiffness == TEETH:
+            solved = solved_mesh(carried, pair)
+            meshes[k] = _filled(carried, pair, mesh, solved, pair.name == varies)
+            cautions += solved.cautions
+    for stage in train.stages:
+        table = planetary[stage.called]
+        of_stage = _solved_of_stage(carried, stage, table.mesh)
+        planetary[stage.called] = table.with_changes(mesh=_of_stage(of_stage, table.mesh))
+        cautions += (text for _, contact in of_stage for text in contact.cautions)
+    filled = train.with_changes(meshes=tuple(meshes), planetary=planetary)
+    return filled.with_solved_meshes(SolvedMeshes(cautions=tuple(dict.fromkeys(cautions))))
+
+
+def _solved_of_stage(
+    carried: Carried, stage: Stage, table: PlanetMeshes
+) -> list[tuple[PlanetMesh, MeshContact]]:
+    """Return the contact of those teeth of a stage's first planet that are to give a stiffness."""
+    return [
+        (mesh, mesh_contact(carried, mesh))
+        for mesh in stage.meshes
+        if mesh.planets == (1,) and getattr(table, f"{mesh.mate}_stiffness") == TEETH
     ]
-    planetary = {
-        stage.called: train.planetary[stage.called].with_changes(
-            mesh=_of_stage(carried, stage, table)
-        )
-        for stage in train.stages
-        for table in [train.planetary[stage.called].mesh]
-    }
-    return train.with_changes(meshes=tuple(meshes), planetary={**train.planetary, **planetary})
 
 
-def _of_stage(carried: Carried, stage: Stage, table: PlanetMeshes) -> PlanetMeshes:
+def _of_stage(
+    solved: Sequence[tuple[PlanetMesh, MeshContact]], table: PlanetMeshes
+) -> PlanetMeshes:
     """Return the table of a stage's meshes with the stiffness and the transmission error of the teeth of
     its first planet.
     """
     changes: dict[str, Any] = {}
-    for mesh in stage.meshes:
-        if mesh.planets != (1,) or getattr(table, f"{mesh.mate}_stiffness") != TEETH:
-            continue
-        cycle = mesh_contact(carried, mesh).cycle
+    for mesh, contact in solved:
+        cycle = contact.cycle
         changes[f"{mesh.mate}_stiffness"] = float(cycle.tangent.mean())
         if mesh.error is None or table.status == "assumed":
             changes[f"{mesh.mate}_error"] = _orders(cycle.line_error)
@@ -343,9 +356,10 @@ def _orders(error: np.ndarray) -> ErrorTable:
     )
 
 
-def _filled(carried: Carried, pair: Pair, mesh: Mesh, varies: bool) -> Mesh:
+def _filled(
+    carried: Carried, pair: Pair, mesh: Mesh, solved: MeshContact | BevelContact, varies: bool
+) -> Mesh:
     """Return the table of a mesh with the numbers of its teeth."""
-    solved = solved_mesh(carried, pair)
     cycle = solved.cycle
     changes: dict[str, Any] = {"stiffness": float(cycle.tangent.mean()), "status": solved.status}
     if isinstance(solved, BevelContact) and mesh.gear_position is None:

@@ -12,8 +12,14 @@ from validation.agree.relation import Relation
 from validation.agree.same_number import unchanged
 
 KIND = "cautions"
-#: a word of every sentence on natural frequencies
+#: a word of every sentence on natural frequencies, and those of sentences on seats and teeth, on
+#: which static numbers rest as well
 ON_FREQUENCIES = re.compile(r"frequenc", re.IGNORECASE)
+ON_STATICS = re.compile(r"decides numbers|softens the teeth|lasting dents")
+#: commands without frequencies
+STATIC = ("answer C_zz", "stiffness", "deflect", "export")
+#: a load for a shaft at rest
+LOAD = "z=1 kN"
 #: numbers, which commands round and list differently
 FIGURES = re.compile(r"[-+]?\d[\d.,e+-]*")
 #: words that begin a caution and end before its numbers
@@ -21,10 +27,13 @@ BEGINNING = 60
 
 
 def of_scene(scene: Path) -> Iterator[Relation]:
-    """Cautions on natural frequencies by all commands that print some, and refusals by all."""
+    """Cautions on numbers by all commands that print some, and refusals by all."""
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv"
         printed = {
+            "answer C_zz": run("answer", scene, "--ask", "C_zz"),
+            "stiffness": run("stiffness", scene),
+            "deflect": run("deflect", scene, "--load", LOAD),
             "answer": run("answer", scene, "--ask", "f1,f2"),
             "modes": run("modes", scene),
             "compare": run("compare", scene, "--out", Path(folder) / "compared"),
@@ -40,6 +49,8 @@ def of_train(train: Path) -> Iterator[Relation]:
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv"
         printed = {
+            "deflect": run("deflect", train),
+            "export": run("export", train, "--out", Path(folder) / "matrices.npz"),
             "system-modes": run("system-modes", train),
             "response": run("response", train),
             "sweep": run("sweep", train, "--vary", unchanged(train), "--out", rows),
@@ -49,10 +60,15 @@ def of_train(train: Path) -> Iterator[Relation]:
 
 
 def alike(subject: str, printed: Mapping[str, Printed]) -> Iterator[Relation]:
-    """Yield a relation for every caution on frequencies and every command with some."""
+    """Yield a relation for every caution on numbers and every command that prints such numbers."""
     answered = {name: output for name, output in printed.items() if output.answered}
-    said = {name: _on_frequencies(output) for name, output in answered.items()}
-    for sentence in sorted(set().union(*said.values())):
+    moving = {name: output for name, output in answered.items() if name not in STATIC}
+    yield from _alike(subject, {name: _on(ON_STATICS, out) for name, out in answered.items()})
+    yield from _alike(subject, {name: _on(ON_FREQUENCIES, out) for name, out in moving.items()})
+
+
+def _alike(subject: str, said: Mapping[str, set[str]]) -> Iterator[Relation]:
+    for sentence in sorted(set[str]().union(*said.values())):
         for name, sentences in said.items():
             by = next(other for other, all_of_it in said.items() if sentence in all_of_it)
             what = f"{name} cautions as {by}: {sentence}"
@@ -65,8 +81,8 @@ def without_crash(subject: str, printed: Mapping[str, Printed]) -> Iterator[Rela
         yield Relation(subject, KIND, f"{name} does not crash", not output.crash, output.crash)
 
 
-def _on_frequencies(printed: Printed) -> set[str]:
-    """Beginnings of cautions on natural frequencies, without figures."""
+def _on(words: re.Pattern[str], printed: Printed) -> set[str]:
+    """Beginnings of cautions with some words, without figures."""
     lines = [
         line.partition("caution: ")[2]
         for line in printed.stderr.splitlines()
@@ -74,7 +90,5 @@ def _on_frequencies(printed: Printed) -> set[str]:
     ]
     sentences = [*lines, *map(str, printed.data.get("cautions", []))]
     return {
-        FIGURES.sub("#", sentence)[:BEGINNING]
-        for sentence in sentences
-        if ON_FREQUENCIES.search(sentence)
+        FIGURES.sub("#", sentence)[:BEGINNING] for sentence in sentences if words.search(sentence)
     }

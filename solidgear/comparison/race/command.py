@@ -22,7 +22,7 @@ from solidgear.comparison.race.timing import (
     setup_seconds,
 )
 from solidgear.comparison.recording import as_record
-from solidgear.core import Record, Scene, SolidgearError
+from solidgear.core import Record, Scene, SolidgearError, number_cautions
 from solidgear.show.command import Progress, command
 from solidgear.show.folder import clear_halves, held
 from solidgear.show.options import Run, SceneFile
@@ -68,7 +68,8 @@ def chart(
         race, reported = run_chart(
             loaded, out, full=full, runs=runs, budget=budget, progress=progress
         )
-        return sheet(race, out, reported)
+        numbers = dict.fromkeys(map(str, race.reference.values))
+        return sheet(race, out, reported, number_cautions(loaded, numbers))
 
     present(study, run)
 

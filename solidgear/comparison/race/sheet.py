@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from functools import partial
 from pathlib import Path
 
@@ -10,6 +11,7 @@ from solidgear.comparison.race.race import PICTURE, ROWS, Race, Row, records
 from solidgear.core import Quantity
 from solidgear.core.plain import plain
 from solidgear.core.quantity import FIRST_BENDING
+from solidgear.show.command import caution
 from solidgear.show.sheet import Section, Sheet, Terminal
 from solidgear.show.table import Column, Table, text, word
 from solidgear.show.words import count, grouped, seconds
@@ -32,7 +34,7 @@ CAPTION = (
 )
 
 
-def sheet(race: Race, out: Path, reported: bool) -> Sheet:
+def sheet(race: Race, out: Path, reported: bool, cautions: Sequence[str] = ()) -> Sheet:
     """Return the sheet of a race whose files are in a folder, and in a report there or not."""
     part = section(race)
     notes = [
@@ -61,12 +63,14 @@ def sheet(race: Race, out: Path, reported: bool) -> Sheet:
             "setup": race.setup,
             "seconds": race.seconds,
             "rows": records(race),
+            "cautions": cautions,
         },
+        cautions=cautions,
         sections=[part],
         terminal=Terminal(
             heading=[],
             tables=[_front(race, narrow=True)],
-            closing=notes,
+            closing=[*notes, *map(caution, cautions)],
             unbroken=[*lines, f"Chart: {out / PICTURE}{written}"],
         ),
         exit_code=0 if race.complete else 130,

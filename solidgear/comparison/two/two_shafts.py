@@ -26,9 +26,9 @@ from solidgear.core import (
     Mode,
     OpenNumbers,
     Quantity,
+    number_cautions,
     pinned,
     size,
-    spin_caution,
 )
 from solidgear.core.judge.answer import LEAST_TOLERANCE
 from solidgear.core.judge.change import Change, ModePair, all_pairs
@@ -217,8 +217,9 @@ def two_shafts(
         shaft = one_shaft(scene, tol, letter, name, points, progress=progress)
         shaft.settled.body.cache.clear()
         shown = [str(mode.name) for mode in shaft.modes.modes if mode.frequency_hz > 0]
-        at_rest = spin_caution(scene, {name: shaft.bars.get(name) for name in shown})
-        shafts.append(replace(shaft, cautions=(*shaft.cautions, *at_rest)))
+        bars = {name: shaft.bars.get(name) for name in shown}
+        said = number_cautions(scene, bars, shaft.settled.rung)
+        shafts.append(replace(shaft, cautions=(*shaft.cautions, *said)))
     a, b = shafts
     pairs, pairing = _paired(a, b)
     progress("under the loads")

@@ -21,7 +21,7 @@ from solidgear.core.body.mode_names import ModeName
 from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError, nearest, show
 from solidgear.core.frames import DOF_NAMES
-from solidgear.core.judge.at_rest import spin_caution
+from solidgear.core.judge.cautions import number_cautions
 from solidgear.core.judge.quantities import canonical_name, judged
 from solidgear.core.judge.question import FamilySolver
 from solidgear.core.judge.refinement import Progress, Refinement, refine
@@ -142,7 +142,7 @@ def answer(
     tol = read_tolerance(scene.ask.tolerance if tol is None else tol)
     wanted = asked_for(scene, ask)
     solver, steps = solve_cheapest(scene, tol, wanted, progress)
-    values = solver.refinement.values()
+    values, rung = solver.refinement.values(), solver.refinement.model.name
     existing = {v.quantity for v in values}
     return Answered(
         scene=scene.name,
@@ -150,9 +150,9 @@ def answer(
         values=values,
         steps=tuple(steps),
         reached=bool(values) and all(v.bar <= tol for v in values),
-        rung=solver.refinement.model.name,
+        rung=rung,
         missing=tuple(q for q in wanted if q not in existing),
-        cautions=tuple(spin_caution(scene, {v.quantity: v.bar for v in values})),
+        cautions=tuple(number_cautions(scene, {v.quantity: v.bar for v in values}, rung)),
         seconds=time.perf_counter() - start,
     )
 

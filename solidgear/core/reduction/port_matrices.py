@@ -53,6 +53,8 @@ class PortMatrices:
         Antisymmetric, times velocities, at the speed that `notes` name, SI.
     notes : tuple of str
         Sentences on what the body is, and what holds it.
+    cautions : tuple of str
+        Sentences on what the numbers leave out.
 
     Examples
     --------
@@ -72,6 +74,7 @@ class PortMatrices:
     damping: np.ndarray | None = None
     gyroscopic: np.ndarray | None = None
     notes: tuple[str, ...] = ()
+    cautions: tuple[str, ...] = ()
     #: keys of a file beside ``matrices`` that they were read by: points and units
     keys: Mapping[str, Any] = field(default_factory=dict)
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 from typing import ClassVar
 
 import numpy as np
@@ -22,6 +23,8 @@ from solidgear.core.display import Displayed
 from solidgear.core.errors import SolidgearError
 from solidgear.core.machine.threads import pinned
 from solidgear.core.named import NamedModes
+from solidgear.core.registry import addition
+from solidgear.core.scene import Scene
 from solidgear.core.solve.coupling import decoupled
 from solidgear.core.solve.eigen import Raw
 from solidgear.core.solve.groups import (
@@ -102,6 +105,19 @@ class ModeSet(NamedModes[Mode], Displayed):
     #: all others that were solved to know that the list is whole, as far as none of their family is
     #: missing between: neighbours of modes of the list
     above: tuple[Mode, ...] = ()
+    #: that the bearings are of, where a whole scene was given
+    scene: Scene | None = field(default=None, repr=False)
+
+    @cached_property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences on what the frequencies of a scene leave out, such as the speed that it states;
+        none of a body on bearings of no scene.
+        """
+        number_cautions = addition("remark", "numbers")  # which solves modes itself
+        if self.scene is None or number_cautions is None:
+            return ()
+        names = [str(mode.name) for mode in self.modes if mode.frequency_hz > 0]
+        return tuple(number_cautions(self.scene, dict.fromkeys(names), self.fidelity))
 
     @property
     def listed_modes(self) -> tuple[Mode, ...]:
@@ -229,6 +245,7 @@ def modes(
         raise SolidgearError(
             "modes: engine = petsc-gamg solves statics only; use engine = petsc, whose factor finds modes"
         )
+    scene = supports if isinstance(supports, Scene) else None
     supports = as_supports(supports)
     spring, bound = decoupled(body, supports, coupling_tolerance)
     own_parts = solved_parts(body, supports, spring, n, method, room)
@@ -282,6 +299,7 @@ def modes(
         evidence,
         further,
         above,
+        scene,
     )
 
 

@@ -24,6 +24,7 @@ def header(matrices: PortMatrices, units: MatrixUnits) -> list[str]:
     """
     count = len(matrices.positions)
     lines = [f"Matrices by solidgear of {matrices.source or 'a system'}", *matrices.notes]
+    lines += [f"caution: {text}" for text in matrices.cautions]
     lines.append(f"units: {units.name} ({units.words}; radians and seconds)")
     lines.append(f"coordinates: {' '.join(DOF_NAMES)} of every point, then modes that move none")
     for k, (name, place) in enumerate(matrices.positions.items(), start=1):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -23,6 +23,7 @@ from solidgear.core import (
     listed,
     load,
     nearest,
+    number_cautions,
     rubin,
     show,
 )
@@ -197,7 +198,8 @@ def _of_scene(scene: Scene, wanted: Wanted, options: dict) -> PortMatrices:
     if not isinstance(model, str):
         raise SolidgearError("a shaft has one model, such as timoshenko; several are for trains")
     supports = as_supports(scene) if wanted.bearings else masses_alone(scene)
-    return _of_shaft(build(scene, model, **options), supports, wanted, scene.name)
+    matrices = _of_shaft(build(scene, model, **options), supports, wanted, scene.name)
+    return replace(matrices, cautions=tuple(number_cautions(scene, model=model)))
 
 
 def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> PortMatrices:
@@ -215,7 +217,7 @@ def _of_shaft(body: Body, supports: Supports, wanted: Wanted, name: str) -> Port
     notes.append(
         "held: stiffness of its bearings is included" if springs else "free: without its bearings"
     )
-    if supports.inertia is not None:
+    if supports.inertia is not None and np.any(supports.inertia):
         notes.append("rigid masses on it are included")
     losses = {SHAFT: wanted.loss} if wanted.loss else None
     swirl: np.ndarray | None = None
@@ -275,7 +277,10 @@ def _of_train(train: Train, wanted: Wanted, options: dict) -> PortMatrices:
     ]
     losses = assembly.loss_factors()
     chosen_ends = {end: end for end in chosen}
-    return port_coordinates(system, chosen_ends, wanted.most_modes, losses, None, train.name, notes)
+    matrices = port_coordinates(
+        system, chosen_ends, wanted.most_modes, losses, None, train.name, notes
+    )
+    return replace(matrices, cautions=assembly.cautions_at_rest(*by_shaft.values()))
 
 
 def _of_system(

@@ -306,12 +306,12 @@ def deflect(
     1400.0
     """
     asked: list[tuple[Assembly, tuple[str, ...]]] = [(assembly, (model,)) for model in models]
-    cautions = list(assembly.data_cautions)
+    left_out: list[str] = []
     if not models:
         assembly, plain_parts = assembly.at_ports(), assembly.settling(CHEAPER[-1])
         asked = [(plain_parts, (model,)) for model in CHEAPER]
         asked.append((assembly, assembly.solids))
-        cautions += (
+        left_out += (
             f"{cuts}: {listed(CHEAPER)} leave it out, since they are of revolution; what is shown last "
             "has it"
             for cuts in assembly.left_out(CHEAPER[-1])
@@ -329,14 +329,14 @@ def deflect(
     if every:
         progress(f"{len(train.operation)} operating points")
         points = deflections(assembly, train.operation, *asked[-1][1])
-    contacts = assembly.at(point).contacts
+    at_point = assembly.at(point)
     return Deflections(
         title=train.title or train.name,
         tolerance=train.ask.tolerance,
         solutions=tuple(solutions),
         standings=standings,
-        cautions=tuple(cautions),
-        senses={} if train.is_one_shaft else senses(train, contacts, point.coast),
+        cautions=(*at_point.cautions_at_rest(*asked[-1][1]), *left_out),
+        senses={} if train.is_one_shaft else senses(train, at_point.contacts, point.coast),
         points=tuple(points),
         planets=tuple(stage.name for stage in train.stages),
     )

@@ -231,7 +231,7 @@ def stress_at_rest(
         asked=asked,
         shafts=shafts,
         open_by=open_by,
-        cautions=(*left_out, *usual.notes, *settling.data_cautions, *torque),
+        cautions=(*left_out, *usual.notes, *usual.assembly.cautions_at_rest(*models), *torque),
         duty=tuple(each.label for each in train.operation) if asked.duty else (),
         cases=tuple(_cases(train.operation, at_points, shafts[0], asked.conditions)),
     )

@@ -38,9 +38,8 @@ from solidgear.core.reduction.craig_bampton import craig_bampton
 from solidgear.core.system.gear_mesh import MeshVector
 from solidgear.core.system.links import Link, PortInertia, grounded, mesh_spring, torsion_spring
 from solidgear.core.system.parts import Inertia, Part, Placed, RigidBody
-from solidgear.trains.assembly.gear_bodies import gear_cautions
+from solidgear.trains.assembly.cautions import train_cautions
 from solidgear.trains.assembly.housing import (
-    housing_cautions,
     housing_losses,
     housing_part,
     links_on_housing,
@@ -51,7 +50,6 @@ from solidgear.trains.assembly.local import local_teeth, mesh_port
 from solidgear.trains.assembly.matrices_body import (
     MATRICES,
     matrices_body,
-    matrices_cautions,
 )
 from solidgear.trains.assembly.mesh_errors import (
     MeshErrors,
@@ -73,7 +71,6 @@ from solidgear.trains.assembly.shaft import (
     lumped,
     names_from,
 )
-from solidgear.trains.assembly.space import overlaps
 from solidgear.trains.assembly.stages import StageAtWork, stages_at_work
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
@@ -466,10 +463,9 @@ class Assembly:
         assembly.chosen_at_rest = set(self.chosen_at_rest)
         return assembly
 
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """Sentences on data that do not fit together but can be solved, and on bearings without
-        load.
+    def cautions(self, *models: str) -> tuple[str, ...]:
+        """Return sentences to be read before numbers of moving shafts by models are used: those at
+        rest, and on bearings without load.
         """
         unloaded = [
             f"bearing {end} carries no load at {self.train.point.label}, so it has no stiffness "
@@ -477,21 +473,15 @@ class Assembly:
             for end in self.train.unloaded
             if self.train.point is not None
         ]
-        return (*self.data_cautions, *unloaded)
+        return (*self.cautions_at_rest(*models), *unloaded)
 
-    @property
-    def data_cautions(self) -> tuple[str, ...]:
-        """Sentences on meshes, gears, shafts that take the same space, and the housing."""
-        sentences = []
-        for name, contact in self.contacts.items():
-            head = f"{name}: " if len(self.contacts) > 1 else ""
-            sentences += [head + text for text in contact.cautions]
-        sentences += gear_cautions(self.train, self.contacts)
-        sentences += map(str, overlaps(self.train, self.scenes, self.places))
-        for side, shaft in self.train.shafts.items():
-            if shaft.matrices is not None:
-                sentences += matrices_cautions(side, shaft.matrices, self.scenes[side])
-        return (*sentences, *housing_cautions(self.train, self.places))
+    def cautions_at_rest(self, *models: str) -> tuple[str, ...]:
+        """Return sentences to be read before numbers of shafts at rest by models, as of
+        :meth:`models_by_shaft`, are used: on meshes, teeth whose contact was solved, gears, shafts
+        that take the same space, the housing, and with models on the seats of their bodies.
+        """
+        by_shaft = self.models_by_shaft(models) if models else {}
+        return train_cautions(self.train, self.contacts, self.scenes, self.places, by_shaft)
 
     @property
     def solids(self) -> tuple[str, ...]:

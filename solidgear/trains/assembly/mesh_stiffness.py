@@ -22,7 +22,7 @@ from solidgear.trains.file.mesh_teeth import moduli_of, wheels_of
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
-from solidgear.trains.file.solved_meshes import SolvedMeshes, load_of
+from solidgear.trains.file.solved_meshes import Meshes, SolvedMeshes, load_of
 from solidgear.trains.file.tables import TEETH
 from solidgear.trains.file.train import Train
 
@@ -95,15 +95,15 @@ class TeethAtRest:
             return self._usual
         key = load, "" if choice == AS_STATED else repr(choice)
         if key not in self._meshes:
-            solved = self._solve(load, choice)
-            self._meshes[key] = solved.meshes, solved.planetary
-        solved_meshes, planetary = self._meshes[key]
+            self._meshes[key] = meshes_of(self._solve(load, choice))
+        solved = self._meshes[key]
         # the teeth are those of the train whatever harmonics they drive
         meshes = tuple(
             mesh.with_changes(local_harmonics=given.local_harmonics)
-            for mesh, given in zip(solved_meshes, self.train.meshes)
+            for mesh, given in zip(solved.meshes, self.train.meshes)
         )
-        return self.train.with_changes(meshes=meshes, planetary=planetary)
+        train = self.train.with_changes(meshes=meshes, planetary=solved.planetary)
+        return train.with_solved_meshes(SolvedMeshes(cautions=solved.cautions))
 
     def over_cycle(self, point: OperatingPoint, mesh: str) -> Train:
         """Return the train with the numbers of its teeth, of one pair over its mesh cycle."""
@@ -132,7 +132,12 @@ class TeethAtRest:
 
 def solved_meshes(trains: Mapping[OperatingPoint, Train]) -> SolvedMeshes:
     """Return what the teeth give in trains that have numbers of them, by operating point."""
-    return SolvedMeshes({(load_of(p), ""): (t.meshes, t.planetary) for p, t in trains.items()})
+    return SolvedMeshes({(load_of(p), ""): meshes_of(train) for p, train in trains.items()})
+
+
+def meshes_of(train: Train) -> Meshes:
+    """Return the meshes of a train that has numbers of its teeth."""
+    return Meshes(train.meshes, train.planetary, train.solved_meshes.cautions)
 
 
 def with_usual_meshes(train: Train) -> Train:

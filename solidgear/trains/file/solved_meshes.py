@@ -6,15 +6,22 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass, field
+from typing import NamedTuple
 
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.planetary import Planetary
 from solidgear.trains.file.tables import Mesh
 
-#: all meshes of a train, and its planetary stages
-Meshes = tuple[tuple[Mesh, ...], dict[str, Planetary]]
 #: load of an operating point, and the place in the ranges of the bearings as a text, empty as stated
 Condition = tuple[OperatingPoint, str]
+
+
+class Meshes(NamedTuple):
+    """All meshes of a train under one load."""
+
+    meshes: tuple[Mesh, ...]
+    planetary: dict[str, Planetary]  #: stages by name
+    cautions: tuple[str, ...]  #: sentences on what the numbers of the teeth leave out
 
 
 @dataclass(frozen=True, eq=False)
@@ -22,6 +29,8 @@ class SolvedMeshes:
     """What the teeth of a train give, which follows from the train: all are equal."""
 
     by_condition: Mapping[Condition, Meshes] = field(default_factory=dict)
+    #: sentences on the teeth whose numbers the train has in place of a word
+    cautions: tuple[str, ...] = ()
     #: whether bearings of catalogue data have their stiffness at the operating point of the train
     with_bearings: bool = False
 

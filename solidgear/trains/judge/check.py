@@ -79,7 +79,7 @@ def _notices(assembly: Assembly, light: Assembly, limit: float) -> Notices:
     facts = [*_facts(assembly, limit), *housing_facts(train), *matrices_facts(train)]
     facts += [line for contact in assembly.contacts.values() for line in wrench_lines(contact)]
     # those of the shafts stand with their guards
-    cautions = [*assembly.cautions, *mesh_unit_slips(assembly), *_loss_cautions(train)]
+    cautions = [*assembly.cautions(), *mesh_unit_slips(assembly), *_loss_cautions(train)]
     for pair in train.drivers:
         if isinstance(pair, PlanetMesh) and pair.mate == "ring":
             continue  # it has the table of the sun

@@ -41,6 +41,7 @@ class SolvedBearings(ByName[BearingFacts | LivesOverPoints], Sheeted):
     name: str
     facts: tuple[BearingFacts, ...] = ()  #: of a shaft
     lives: tuple[LivesOverPoints, ...] = ()  #: of a train, or over the cases of a shaft
+    cautions: tuple[str, ...] = ()  #: of a train, sentences on what its numbers leave out
     case: str = ""  #: of the loads of a shaft that has several, of `facts`
     scene: Scene | None = field(default=None, repr=False)  #: of a shaft, under its load
     body: Body | None = field(default=None, repr=False)  #: on which its bearings settle
@@ -73,7 +74,7 @@ class SolvedBearings(ByName[BearingFacts | LivesOverPoints], Sheeted):
 def bearings_sheet(solved: SolvedBearings, units: Units, chart: Path | None = None) -> Sheet:
     """Return the sheet of catalogue bearings, which has units of its own; `chart` is drawn already."""
     if solved.scene is None:
-        return sheets.train_sheet(solved.name, solved.lives)
+        return sheets.train_sheet(solved.name, solved.lives, solved.cautions)
     return sheets.scene_sheet(solved.name, solved.facts, chart, solved.case, solved.lives)
 
 
@@ -143,7 +144,7 @@ def bearing(
             raise SolidgearError(f"`name` {name}: no bearing of catalogue data has this name")
         lives = _over_cases(scene, name) if len(scene.cases) > 1 else ()
     label = first.name if scene.cases else ""
-    return SolvedBearings(scene.name, tuple(facts), lives, label, scene, body)
+    return SolvedBearings(scene.name, tuple(facts), lives, (), label, scene, body)
 
 
 def _over_cases(scene: Scene, name: str | None) -> tuple[LivesOverPoints, ...]:
@@ -158,13 +159,18 @@ def _over_cases(scene: Scene, name: str | None) -> tuple[LivesOverPoints, ...]:
 def _of_train(source: Source, name: str | None) -> SolvedBearings:
     """Return the bearings of a train, or one of them."""
     # start-up: bearings of a shaft have no use for the equilibrium of trains
-    from solidgear.trains.load.lives import train_lives
+    from solidgear.trains.assembly.assembly import Assembly
+    from solidgear.trains.load.lives import lives_of
     from solidgear.trains.loading import load_train
 
-    lives = [life for life in train_lives(load_train(source)) if name in (None, life.name)]
+    assembly = Assembly(load_train(source))
+    lives = [life for life in lives_of(assembly) if name in (None, life.name)]
     if not lives:
         raise SolidgearError(
             f"`name` {name}: no bearing of catalogue data has this name; write shaft and name, "
             "such as pinion.A"
         )
-    return SolvedBearings(name_of(name_of_source(source)), lives=tuple(lives))
+    points = assembly.asked_train.operation
+    cautions = [text for point in points for text in assembly.at(point).cautions_at_rest()]
+    title = name_of(name_of_source(source))
+    return SolvedBearings(title, lives=tuple(lives), cautions=tuple(dict.fromkeys(cautions)))

@@ -18,13 +18,18 @@ def train_lives(train: Train) -> list[LivesOverPoints]:
     """Return the life of every catalogue bearing of a train at all operating points, or of a shaft
     alone in all cases of its loads; refused without points or catalogue bearings.
     """
+    return lives_of(Assembly(train))
+
+
+def lives_of(assembly: Assembly) -> list[LivesOverPoints]:
+    """Return the same by the assembly of a train."""
+    train = assembly.asked_train
     if not train.operation:
         raise SolidgearError(
             f"{train.name} has no operating point; write [operation] with a torque in its file"
         )
     scenes = {side: shaft.scene for side, shaft in train.shafts.items()}
     unknown, choices = left_open(scenes.values())
-    assembly = Assembly(train)
     settled = [
         _states(Operating(assembly, choice=choice), train) for choice in (AS_STATED, *choices)
     ]

@@ -4,14 +4,14 @@ for modes, and those of other solids along their lists, coarse to fine.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from solidgear.core import LADDER
 from solidgear.core.bounds.refining import Meshed
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_errors import Need
-from solidgear.trains.assembly.shaft import JUDGE, Level
+from solidgear.trains.assembly.shaft import JUDGE, Level, ShaftModel
 
 
 @dataclass(frozen=True)
@@ -72,6 +72,11 @@ class MeshesAtRest:
             if isinstance(mesh, Level) and mesh.finer is not None:
                 finer[side] = mesh.finer
         return finer
+
+    def shafts(self, sides: Iterable[str]) -> list[ShaftModel]:
+        """Return shafts whose meshes follow, as they are."""
+        following = self.following
+        return [self.assembly.shaft_model(side, following[side]) for side in sides]
 
     def refine(self, meshes: Mapping[str, Meshed | Level]) -> None:
         """Build and reduce shafts on other meshes."""

@@ -163,9 +163,17 @@ class Operating:
 
         def refine(meshes: Mapping[str, Meshed | Level]) -> None:
             nonlocal state
-            meshes_at_rest.refine(meshes)
-            self._meshing.clear()
-            state = self._settled(point, None)
+            before = meshes_at_rest.shafts(meshes)
+            try:
+                meshes_at_rest.refine(meshes)
+                self._meshing.clear()
+                state = self._settled(point, None)
+            except (SolidgearError, MemoryError):
+                # the state before stands, on the meshes that it was solved on
+                for shaft in before:
+                    self.assembly.add_model(shaft)
+                self._meshing.clear()
+                raise
 
         refine_meshes(finer, refine)
         return state

@@ -264,7 +264,7 @@ def train_modes(
             line for contact in assembly.contacts.values() for line in wrench_lines(contact)
         ),
         unpublished=train.unpublished(),
-        cautions=(*assembly.cautions, *([spin.sentence] if spin else [])),
+        cautions=(*assembly.cautions(*models), *([spin.sentence] if spin else [])),
         spin=spin,
         undriven={side: families for side, families in undriven_modes.items() if families},
         local=local_lines(assembly, system),

@@ -67,7 +67,7 @@ def respond(
         columns[f"mesh force, order {order} [N]"] = force
     columns |= by_name
     by_shaft = assembly.models_by_shaft(models)
-    cautions = [*assembly.cautions, *local_lines(assembly, drive.system)]
+    cautions = [*assembly.cautions(*models), *local_lines(assembly, drive.system)]
     spin = spin_moved(assembly, drive.system, by_shaft, highest, turns)
     cautions += [spin.sentence] if spin else []
     if not forces:

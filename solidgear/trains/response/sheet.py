@@ -165,7 +165,8 @@ def receptance_sheet(result: Receptances, units: Units) -> Sheet:
     from_, to = ":".join(first.from_), ":".join(first.to)
     title = f"{assembly.train.called}: {to} for a unit force on {from_}"
     unpublished, slips = assembly.train.unpublished(), unit_slips(assembly)
-    cautions = [*slips, *assembly.cautions]
+    said = assembly.cautions(*first.models.values())
+    cautions = [*slips, *said]
     keys = ("frequency_hz", "amplitude", "mode")
     models = [
         {**r.models, "damping": r.damping, "peaks": [dict(zip(keys, peak)) for peak in r.peaks]}
@@ -204,7 +205,7 @@ def receptance_sheet(result: Receptances, units: Units) -> Sheet:
             closing=[
                 *map(in_ascii, of_teeth(assembly, units)),
                 *unpublished_lines(unpublished),
-                *map(caution, assembly.cautions),
+                *map(caution, said),
             ],
             lines="whole",
         ),

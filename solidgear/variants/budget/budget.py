@@ -48,8 +48,8 @@ from solidgear.core import (
     change,
     load,
     modes,
+    number_cautions,
     rubin,
-    spin_caution,
 )
 from solidgear.core.body import Supports
 from solidgear.core.judge.correlation import FOREIGN
@@ -145,7 +145,10 @@ def budget(
     asked = questions(study.points, ranges, insides)
     bars = {str(number.quantity): None for number in ranges.numbers}
     return Budget(
-        scene=scene.name, questions=asked, cautions=spin_caution(scene, bars), **dict(ranges)
+        scene=scene.name,
+        questions=asked,
+        cautions=number_cautions(scene, bars, study.points.model),
+        **dict(ranges),
     )
 
 

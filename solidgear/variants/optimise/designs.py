@@ -10,9 +10,9 @@ from solidgear.core import (
     SolidgearError,
     Source,
     nearest,
+    number_cautions,
     read_tolerance,
     show,
-    spin_caution,
 )
 from solidgear.core.body.mode_names import ModeName
 from solidgear.variants.optimise.wish import FIRST, Rows
@@ -89,8 +89,8 @@ def scene_designs(
         ]
         return [*names_at_rest, *modes_of_row]
 
-    at_rest = tuple(spin_caution(base, dict.fromkeys(names)))
-    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of, at_rest)
+    cautions = tuple(number_cautions(base, dict.fromkeys(names), model or ""))
+    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of, cautions)
 
 
 #: kinds of numbers of a shaft that have columns of their own
@@ -159,7 +159,8 @@ def train_designs(
     if every_point:
         solved += f", at the worst of {points} operating points"
     unbarred = "none: rows of a train have no error bars"
-    return Designs(task, usual.title or usual.name, points, solved, unbarred, _numbers_of_train)
+    title = usual.title or usual.name
+    return Designs(task, title, points, solved, unbarred, _numbers_of_train, task.cautions)
 
 
 def _kinds(task: TrainTask, names: Sequence[str]) -> tuple[str, ...]:

@@ -29,8 +29,8 @@ from solidgear.core import (
     load,
     modes,
     nearest,
+    number_cautions,
     pinned,
-    spin_caution,
 )
 from solidgear.core.errors import names_in
 from solidgear.core.loading import part_of
@@ -254,8 +254,8 @@ def sensitivities(
         for k, quantity in enumerate(quantities)
     )
     notes = tuple(_notes(scene, levels, of_numbers))
-    at_rest = tuple(spin_caution(scene, dict.fromkeys(map(str, quantities))))
-    return Sensitivities(scene.title or scene.name, model, of_numbers, without, notes, at_rest)
+    cautions = tuple(number_cautions(scene, dict.fromkeys(map(str, quantities)), model))
+    return Sensitivities(scene.title or scene.name, model, of_numbers, without, notes, cautions)
 
 
 def _ranked(rows: list[Derivative]) -> tuple[Derivative, ...]:

@@ -16,9 +16,10 @@ from solidgear.core import (
     Source,
     as_supports,
     build,
+    number_cautions,
     read_tolerance,
-    spin_caution,
 )
+from solidgear.core.judge.cautions import AT_REST, SHOWN
 from solidgear.core.judge.solving import answer_of_body
 from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of, one_shaft
@@ -64,10 +65,9 @@ class SceneTask(FileTask):
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """Sentences on natural frequencies of a shaft whose speed is stated."""
-        if ANSWER not in self.ask:
-            return ()
-        return tuple(spin_caution(self.variants.variant(self.first)))
+        """Sentences to be read before the numbers of rows are used, by the first variant."""
+        numbers = SHOWN if ANSWER in self.ask else AT_REST
+        return tuple(number_cautions(self.variants.variant(self.first), numbers, self.model or ""))
 
     @property
     def columns(self) -> dict[str, type]:

@@ -10,7 +10,8 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import build, spin_caution
+from solidgear.core import build, number_cautions
+from solidgear.core.judge.cautions import SHOWN
 from solidgear.core.plain import plain
 from solidgear.guards.check import cautions as cautions_on
 from solidgear.show.command import caution
@@ -76,7 +77,7 @@ def _bearings_sheet(result: SweptBearings, units: Units, chart: Path | None) -> 
     task, settled = result.task, result.task.settled
     scene = task.variants.scene
     cautions = cautions_on(scene, build(scene.plain, "timoshenko"), task.model)
-    cautions += spin_caution(scene)
+    cautions += number_cautions(scene, SHOWN, task.model)
     return _sheet(
         result,
         scene.title or scene.name,

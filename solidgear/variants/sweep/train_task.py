@@ -18,8 +18,8 @@ from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
 from solidgear.teeth.study import touching
-from solidgear.trains.assembly.assembly import KEPT
-from solidgear.trains.assembly.layout import contacts
+from solidgear.teeth.train_teeth import solved_mesh, with_teeth
+from solidgear.trains.assembly.assembly import KEPT, Assembly
 from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, solved_meshes
 from solidgear.trains.assembly.shaft import LUMPED, checked_model, usual_models
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
@@ -108,9 +108,18 @@ class TrainTask(FileTask):
 
     @property
     def cautions(self) -> tuple[str, ...]:
-        """Sentences on data that contradict each other in trains that can be solved."""
-        meshes = contacts(self.usual).values()
-        return tuple(text for mesh in meshes for text in mesh.cautions)
+        """Sentences to be read before the numbers of rows are used, by the first variant."""
+        train, of_contact = self.usual, list[str]()
+        point = self.variants.operating_point(self.first, train)
+        if point is not None and point.torque and (CONTACT in self.ask or asks_for_teeth(train)):
+            key = self.variants.beside_flanks(self.first)
+            carried = self.teeth.carried(key, train, point)
+            if CONTACT in self.ask:
+                meshes = (solved_mesh(carried, mesh) for mesh in touching(train))
+                of_contact += (text for mesh in meshes for text in mesh.cautions)
+            train = with_teeth(train, carried)
+        cautions = Assembly(train).cautions_at_rest(*self.models.values())
+        return tuple(dict.fromkeys((*cautions, *of_contact)))
 
     @property
     def columns(self) -> dict[str, type]:
