@@ -24,6 +24,14 @@ def test_a_hung_shaft_has_natural_frequencies(run):
     assert modes[0]["frequency_hz"] == pytest.approx(with_point, rel=0.005)  # both bars
 
 
+def test_a_free_part_has_natural_frequencies_and_six_free_motions():
+    scene = sg.load(FOUND / "parts/port_free.toml")
+    assert scene.ports == ()
+    modes = sg.modes(sg.build(scene, "solid", refinement=0.2), scene, n=8)
+    free, elastic = modes.frequency_hz[:6], modes.frequency_hz[6:]
+    assert list(free) == [0.0] * 6 and min(elastic) > 100.0
+
+
 def test_it_is_judged_by_frequencies_alone():
     assert judged(sg.load(HUNG)) == ("bending 1", "axial 1")
     assert [v.quantity for v in sg.answer(HUNG).values] == ["bending 1", "axial 1"]
