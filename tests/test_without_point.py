@@ -45,6 +45,15 @@ def test_it_is_checked_without_a_word_on_lumping():
     assert not [model for model in check.verdicts if model.startswith("lumped")]
 
 
+def test_a_sweep_of_it_has_its_natural_frequencies():
+    """Rows of it have no compliance, and the frequencies of `answer`."""
+    rows = sg.sweep(HUNG, "segment.right.diameter=45 mm,50 mm", n=1)
+    assert list(rows["status"]) == ["ok", "ok"] and "C_zz" not in rows.columns
+    assert rows["f1_hz"][0] == pytest.approx(sg.answer(HUNG)["bending 1"], rel=1e-6)
+    (beam,) = sg.sweep(HUNG, "segment.right.diameter=45 mm", model="timoshenko", n=1)["f1_hz"]
+    assert beam == pytest.approx(rows["f1_hz"][0], rel=0.05)  # beam against solid
+
+
 def test_measured_resonances_of_it_are_paired(run, tmp_path):
     (tmp_path / "peaks.csv").write_text("frequency [Hz]\n1300\n2630\n")
     code, out, _ = run("correlate", HUNG, tmp_path / "peaks.csv", "--tol", "1e-2", "--json")

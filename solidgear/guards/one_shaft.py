@@ -21,7 +21,7 @@ from solidgear.core import (
 )
 from solidgear.core.judge.change import Side
 from solidgear.core.judge.quantities import Values
-from solidgear.core.judge.solving import answer_of_body
+from solidgear.core.judge.solving import quantities_at, search_modes
 from solidgear.core.scene.own_mass import own_mass
 from solidgear.guards.check import cautions
 
@@ -79,24 +79,27 @@ def one_shaft(
     def say(text: str) -> None:
         progress(f"{letter}: {text}" if letter else text)
 
-    settled = settle(scene, tol, points=points, before=before, progress=say)
+    ask = "all" if scene.ports else "modes"
+    settled = settle(scene, tol, ask, points=points, before=before, progress=say)
     body = settled.body
     say("statics and modes")
-    solution = answer_of_body(
+    supports = as_supports(scene)
+    modes = search_modes(
         body,
-        as_supports(scene),
-        [scene.port.name, *points],
-        n=scene.ask.modes,
+        supports,
+        scene.ask.modes,
+        [q for q in QUANTITIES if q.is_frequency],
         max_frequency=scene.ask.max_frequency,
         ovalising=True,
-        wanted=[q for q in QUANTITIES if q.is_frequency],
         spare=True,
     )
+    main = [port.name for port in scene.ports[:1]]
+    values = quantities_at([*main, *points], body, supports, modes)
     say("error bars of its frequencies")
-    bars = bars_of_modes(scene, body, solution.modes.whole, settled)
+    bars = bars_of_modes(scene, body, modes.whole, settled)
     for quantity in (q for q in settled.bars if q.is_frequency):
         # bending may be called by its plane
-        mode = solution.modes.named(quantity)
+        mode = modes.named(quantity)
         if mode is not None:
             bars.setdefault(str(mode.name), settled.bars[quantity])
     mass, mass_bar = mass_of(scene)
@@ -106,8 +109,8 @@ def one_shaft(
         cautions=tuple(cautions(scene, body)) if guarded else (),
         scene=scene,
         settled=settled,
-        values=solution.quantities,
-        modes=solution.modes,
+        values=values,
+        modes=modes,
         bars=bars,
         mass=mass,
         mass_bar=mass_bar,
