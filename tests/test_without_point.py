@@ -54,6 +54,13 @@ def test_a_sweep_of_it_has_its_natural_frequencies():
     assert beam == pytest.approx(rows["f1_hz"][0], rel=0.05)  # beam against solid
 
 
+def test_a_search_for_what_it_has_not_is_refused(run):
+    vary = ("--vary", "segment.left.diameter=38 mm:45 mm", "-f", "timoshenko")
+    code, _, err = run("optimise", HUNG, *vary, "--goal", "min C_zz")
+    said = " ".join(err.split())
+    assert code != 0 and "a design has no C_zz; it has mass," in said
+
+
 def test_measured_resonances_of_it_are_paired(run, tmp_path):
     (tmp_path / "peaks.csv").write_text("frequency [Hz]\n1300\n2630\n")
     code, out, _ = run("correlate", HUNG, tmp_path / "peaks.csv", "--tol", "1e-2", "--json")
