@@ -29,7 +29,7 @@ from solidgear.variants.sweep.bearing_task import SweptBearings
 from solidgear.variants.sweep.curves import Curve, Curves
 from solidgear.variants.sweep.error_chart import error_chart, error_table
 from solidgear.variants.sweep.error_curves import ErrorCurves
-from solidgear.variants.sweep.file_task import Swept
+from solidgear.variants.sweep.file_task import BARS, Swept
 from solidgear.variants.sweep.shaft_numbers import NOT_RATED
 from solidgear.variants.sweep.train_task import CONTACT, MODES, MOST_MODES, PARTS, TrainTask
 
@@ -112,7 +112,7 @@ def _scene_sheet(result: Swept, units: Units, chart: Path | None) -> Sheet:
 
 def _on_bars(result: Swept) -> list[str]:
     """Return a sentence on the error bars of the rows, where there is something to say of them."""
-    if result.task.model is not None:
+    if BARS in result.columns:
         return ["A model that is given has no error bars; -f auto has."]
     columns = result.columns
     bars = [
