@@ -19,6 +19,7 @@ from solidgear.strength.deflection.at_rest import AT_REST, deflection
 from solidgear.strength.stress.spread_weight import SpreadWeight
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.variants.sweep.bench import surface
+from solidgear.variants.sweep.sheet import sweep_sheet
 
 ROOT = Path(__file__).parent.parent
 PINS = ROOT / "tests" / "found" / "parts" / "pins_load.toml"
@@ -179,6 +180,7 @@ def test_a_sweep_under_load_takes_keyed_shafts(tmp_path):
     (shaft,) = sg.stress(path).shafts
     assert rows["fatigue_safety"][0] == pytest.approx(shaft.found.worst[0].rating.fatigue)
     assert rows["mass"][0] == pytest.approx(own_mass(scene).mass, rel=1e-12)
+    assert "model that is given" not in " ".join(sweep_sheet(rows).terminal.closing)  # none was
 
 
 def test_a_step_part_is_a_key_of_what_was_solved():

@@ -568,6 +568,25 @@ def test_pins_between_discs_are_no_solid_cylinder():
     assert scene.body.centre == pytest.approx((0, 1e-3 * volumes @ y / volumes.sum(), 0), abs=1e-7)
 
 
+@pytest.mark.parametrize("axis, centre", [("y", 39.31e-3), ("-y", 55.69e-3)])
+def test_pins_before_a_shaft_are_of_its_length(axis, centre):
+    """No wall stands on the axis where the part begins: 95 mm and 0.978 kg of steel by the kernel."""
+    tables = sg.load(FOUND / "pins_start.toml").to_dict()
+    tables["body"] = {"step": str(FOUND / "pins_start.step"), "axis": axis}
+    scene = sg.load(tables)
+    assert scene.length == pytest.approx(95e-3, abs=1e-6)
+    assert 7850 * scene.body.volume == pytest.approx(0.978, abs=5e-4)
+    assert scene.body.centre[1] == pytest.approx(centre, abs=1e-5)
+
+
+def test_a_shallow_slot_leaves_the_round_part_as_well():
+    scene = sg.load(FOUND / "slot_shallow.toml")
+    (segment,) = scene.segments
+    assert segment.outer0 == pytest.approx(0.02, rel=1e-6)
+    assert scene.length == pytest.approx(0.1, abs=1e-9)
+    assert scene.body.volume == pytest.approx(123.786e-6, rel=1e-4)
+
+
 def test_a_seat_on_no_cylinder_is_refused(tmp_path):
     """A port over three pins has no surface to hold."""
     text = (FOUND / "pins_load.toml").read_text()

@@ -24,6 +24,14 @@ def test_a_hung_shaft_has_natural_frequencies(run):
     assert modes[0]["frequency_hz"] == pytest.approx(with_point, rel=0.005)  # both bars
 
 
+def test_a_free_part_has_natural_frequencies_and_six_free_motions():
+    scene = sg.load(FOUND / "parts/port_free.toml")
+    assert scene.ports == ()
+    modes = sg.modes(sg.build(scene, "solid", refinement=0.2), scene, n=8)
+    free, elastic = modes.frequency_hz[:6], modes.frequency_hz[6:]
+    assert list(free) == [0.0] * 6 and min(elastic) > 100.0
+
+
 def test_it_is_judged_by_frequencies_alone():
     assert judged(sg.load(HUNG)) == ("bending 1", "axial 1")
     assert [v.quantity for v in sg.answer(HUNG).values] == ["bending 1", "axial 1"]
@@ -35,6 +43,22 @@ def test_it_is_checked_without_a_word_on_lumping():
     assert "bending 1 of the Euler beam is" in said
     assert "(start)" not in said and "not checked" not in said
     assert not [model for model in check.verdicts if model.startswith("lumped")]
+
+
+def test_a_sweep_of_it_has_its_natural_frequencies():
+    """Rows of it have no compliance, and the frequencies of `answer`."""
+    rows = sg.sweep(HUNG, "segment.right.diameter=45 mm,50 mm", n=1)
+    assert list(rows["status"]) == ["ok", "ok"] and "C_zz" not in rows.columns
+    assert rows["f1_hz"][0] == pytest.approx(sg.answer(HUNG)["bending 1"], rel=1e-6)
+    (beam,) = sg.sweep(HUNG, "segment.right.diameter=45 mm", model="timoshenko", n=1)["f1_hz"]
+    assert beam == pytest.approx(rows["f1_hz"][0], rel=0.05)  # beam against solid
+
+
+def test_a_search_for_what_it_has_not_is_refused(run):
+    vary = ("--vary", "segment.left.diameter=38 mm:45 mm", "-f", "timoshenko")
+    code, _, err = run("optimise", HUNG, *vary, "--goal", "min C_zz")
+    said = " ".join(err.split())
+    assert code != 0 and "a design has no C_zz; it has mass," in said
 
 
 def test_measured_resonances_of_it_are_paired(run, tmp_path):

@@ -24,7 +24,7 @@ from solidgear.core import (
 from solidgear.core.judge.bounded import with_all_for_bars
 from solidgear.core.judge.change import Side
 from solidgear.core.judge.quantities import Values
-from solidgear.core.judge.solving import Answer, answer_of_body
+from solidgear.core.judge.solving import quantities_at, search_modes
 from solidgear.core.scene.own_mass import own_mass
 from solidgear.guards.check import cautions
 
@@ -86,37 +86,40 @@ def one_shaft(
     def say(text: str) -> None:
         progress(f"{letter}: {text}" if letter else text)
 
-    def solved(body: Body) -> Answer:
-        say("statics and modes")
-        return answer_of_body(
+    def solved(body: Body) -> ModeSet:
+        say("modes")
+        return search_modes(
             body,
             as_supports(scene),
-            [scene.port.name, *points],
-            n=scene.ask.modes,
+            scene.ask.modes,
+            [q for q in QUANTITIES if q.is_frequency],
             max_frequency=scene.ask.max_frequency,
             ovalising=True,
-            wanted=[q for q in QUANTITIES if q.is_frequency],
             spare=True,
         )
 
-    last: list[tuple[Answer, ModeSet]] = []  # of the last mesh, with all that its bars rest on
+    #: of the last mesh: its modes, and all that their bars rest on
+    last: list[tuple[Body, ModeSet, ModeSet]] = []
 
     def listing(body: Body, supports: Supports) -> ModeSet:
-        solution = solved(body)
-        last[:] = [(solution, with_all_for_bars(body, supports, solution.modes.whole))]
-        return last[0][1]
+        listed = solved(body)
+        last[:] = [(body, listed, with_all_for_bars(body, supports, listed.whole))]
+        return last[0][2]
 
-    settled = settle(scene, tol, points=points, before=before, listing=listing, progress=say)
+    ask = "all" if scene.ports else "modes"
+    settled = settle(scene, tol, ask, points=points, before=before, listing=listing, progress=say)
     body, extended = settled.body, None
-    if last and last[0][0].body is body:
-        ((solution, extended),) = last
+    if last and last[0][0] is body:
+        ((_, modes, extended),) = last
     else:
-        solution = solved(body)
+        modes = solved(body)
+    main = [port.name for port in scene.ports[:1]]
+    values = quantities_at([*main, *points], body, as_supports(scene), modes)
     say("error bars of its frequencies")
-    bars = bars_of_modes(scene, body, solution.modes.whole, settled, extended)
+    bars = bars_of_modes(scene, body, modes.whole, settled, extended)
     for quantity in (q for q in settled.bars if q.is_frequency):
         # bending may be called by its plane
-        mode = solution.modes.named(quantity)
+        mode = modes.named(quantity)
         if mode is not None:
             bars.setdefault(str(mode.name), settled.bars[quantity])
     mass, mass_bar = mass_of(scene)
@@ -126,8 +129,8 @@ def one_shaft(
         cautions=tuple(cautions(scene, body)) if guarded else (),
         scene=scene,
         settled=settled,
-        values=solution.quantities,
-        modes=solution.modes,
+        values=values,
+        modes=modes,
         bars=bars,
         mass=mass,
         mass_bar=mass_bar,

@@ -242,3 +242,13 @@ def answer_of_body(
     statics = Statics.at_points(body, supports, ports)
     listed = search_modes(body, supports, n, wanted, ovalising=ovalising, **options)
     return Answer.measured(body, supports, statics, listed)
+
+
+def quantities_at(
+    points: Sequence[str], body: Body, supports: Supports, listed: ModeSet
+) -> dict[Quantity, float]:
+    """Measure modes, and statics at some points where there are any, the main one first."""
+    if not points:
+        return measure(None, listed)
+    statics = Statics.at_points(body, supports, points)
+    return Answer.measured(body, supports, statics, listed).quantities

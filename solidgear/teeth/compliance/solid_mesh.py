@@ -89,7 +89,7 @@ class SweptPitch:
         cells = corners[:, flat % 4] + count * (layer + level // 2)
         used, compact = np.unique(cells, return_inverse=True)
         places = self.places(self.plane.points[used % count], self.ends[used // count])
-        mesh = MeshHex(places.T.copy(), compact.reshape(-1, 8).T.astype(np.int32))
+        mesh = MeshHex(places.T.copy(), np.ascontiguousarray(compact.reshape(-1, 8).T, np.int32))
         element = basis_of(NAME)
         dofs = unknowns(mesh, element)
         flat, level = self._names(element.doflocs)

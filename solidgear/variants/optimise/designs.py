@@ -20,7 +20,7 @@ from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.entries import Entry
 from solidgear.variants.sweep.file_task import FileTask, without_bars
 from solidgear.variants.sweep.file_variants import POINT, scene_variants
-from solidgear.variants.sweep.scene_task import STATICS, SceneTask
+from solidgear.variants.sweep.scene_task import STATICS, SceneTask, statics_of
 from solidgear.variants.sweep.shaft_numbers import ANSWER, columns_of
 from solidgear.variants.sweep.shaft_numbers import ASKED as ASKED_OF_SHAFT
 from solidgear.variants.sweep.train_task import ASKED, CONTACT, MASS, MODES, TrainTask, train_task
@@ -75,7 +75,7 @@ def scene_designs(
         unbarred = without_bars(model)
     columns = {kind: [*columns_of(base, (kind,), barred=False)] for kind in AT_REST}
     names_at_rest = [
-        *map(str, STATICS),
+        *map(str, statics_of(base)),
         "mass",
         *(name for group in columns.values() for name in group),
     ]

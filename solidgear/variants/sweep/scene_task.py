@@ -11,6 +11,7 @@ from solidgear.core import (
     LADDER,
     QUANTITIES,
     Body,
+    Quantity,
     Scene,
     Settled,
     Source,
@@ -20,7 +21,7 @@ from solidgear.core import (
     read_tolerance,
 )
 from solidgear.core.judge.cautions import AT_REST, SHOWN
-from solidgear.core.judge.solving import answer_of_body
+from solidgear.core.judge.solving import quantities_at, search_modes
 from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of, one_shaft
 from solidgear.variants.sweep.bench import surface
@@ -43,6 +44,11 @@ from solidgear.variants.sweep.shaft_numbers import (
 STATICS = tuple(q for q in QUANTITIES if not q.is_frequency)
 #: natural frequencies of a row at most
 MOST_MODES = 30
+
+
+def statics_of(scene: Scene) -> tuple[Quantity, ...]:
+    """Return the static quantities of a row: none of a scene without a lumped point."""
+    return STATICS if scene.ports else ()
 
 
 @dataclass(frozen=True)
@@ -74,7 +80,7 @@ class SceneTask(FileTask):
         out: dict[str, type] = {"model": str, "unknowns": int}
         out |= {"mass": float, "mass bar": float} | ({BARS: str} if self.model else {})
         if ANSWER in self.ask:
-            for name in STATICS:
+            for name in statics_of(self.variants.variant(self.first)):
                 out |= self._with_bar(str(name), float)
             for k in range(1, self.n + 1):
                 out |= self._with_bar(f"f{k}_hz", float) | {f"mode{k}": str}
@@ -128,7 +134,7 @@ class SceneTask(FileTask):
             "mass": shaft.mass,
             "mass bar": shaft.mass_bar,
         }
-        for name in STATICS:
+        for name in statics_of(scene):
             out |= {str(name): shaft.values.get(name), f"{name} bar": shaft.bar(name)}
         elastic = [mode for mode in shaft.modes.modes if mode.frequency_hz > 0]
         for k, mode in enumerate(map(shaft.seen, elastic[: self.n]), start=1):
@@ -140,9 +146,10 @@ class SceneTask(FileTask):
         """Return numbers of one model on the mesh that was asked for, without error bars."""
         assert self.model is not None
         body: Body = build(scene, self.model, **self.options)
-        numbers = answer_of_body(
-            body, as_supports(scene), [scene.port.name], self.n, ovalising=True
-        )
+        supports = as_supports(scene)
+        modes = search_modes(body, supports, self.n, (), ovalising=True)
+        points = [port.name for port in scene.ports[:1]]
+        values = quantities_at(points, body, supports, modes)
         mass, bar = mass_of(scene)
         out: dict[str, Any] = {
             "model": self.model,
@@ -151,8 +158,8 @@ class SceneTask(FileTask):
             "mass bar": bar,
             BARS: without_bars(self.model),
         }
-        out |= {str(name): numbers.quantities.get(name) for name in STATICS}
-        elastic = [mode for mode in numbers.modes.modes if mode.frequency_hz > 0]
+        out |= {str(name): values.get(name) for name in statics_of(scene)}
+        elastic = [mode for mode in modes.modes if mode.frequency_hz > 0]
         for k, mode in enumerate(elastic[: self.n], start=1):
             out |= {f"f{k}_hz": mode.frequency_hz, f"mode{k}": str(mode.name)}
         return out

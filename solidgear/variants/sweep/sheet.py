@@ -30,7 +30,7 @@ from solidgear.variants.sweep.bearing_task import SweptBearings
 from solidgear.variants.sweep.curves import Curve, Curves
 from solidgear.variants.sweep.error_chart import error_chart, error_table
 from solidgear.variants.sweep.error_curves import ErrorCurves
-from solidgear.variants.sweep.file_task import Swept
+from solidgear.variants.sweep.file_task import BARS, Swept
 from solidgear.variants.sweep.shaft_numbers import NOT_RATED
 from solidgear.variants.sweep.train_task import CONTACT, MODES, MOST_MODES, PARTS, TrainTask
 
@@ -98,25 +98,34 @@ def _bearings_sheet(result: SweptBearings, units: Units, chart: Path | None) -> 
 
 def _scene_sheet(result: Swept, units: Units, chart: Path | None) -> Sheet:
     """Return the sheet of variants of the file of a shaft."""
-    bars = [
-        bar / hz
-        for bar, hz in zip(result.columns.get("f1_hz bar", []), result.columns.get("f1_hz", []))
-        if bar is not None and hz
-    ]
-    note = "A model that is given has no error bars; -f auto has."
-    if bars:
-        note = f"Error bars are in columns beside the numbers; of f1 up to {max(bars):.2g}."
     return _sheet(
         result,
         result.task.variants.path.stem,
         units,
         lead=f"Rows in {result.path.name}.",
         solved=_solved(result),
-        notes=[note, *result.task.variants.followed, *_not_rated(result)],
+        notes=[*_on_bars(result), *result.task.variants.followed, *_not_rated(result)],
         chart=chart,
         cautions=result.cautions,
         data=plain(result) | {"cautions": result.cautions},
     )
+
+
+def _on_bars(result: Swept) -> list[str]:
+    """Return a sentence on the error bars of the rows, where there is something to say of them."""
+    if BARS in result.columns:
+        return ["A model that is given has no error bars; -f auto has."]
+    columns = result.columns
+    bars = [
+        bar / hz
+        for bar, hz in zip(columns.get("f1_hz bar", []), columns.get("f1_hz", []))
+        if bar is not None and hz
+    ]
+    if bars:
+        return [f"Error bars are in columns beside the numbers; of f1 up to {max(bars):.2g}."]
+    names = [name for name in columns if name.endswith(" bar") and name != "mass bar"]
+    barred = any(any(columns[name]) for name in names)
+    return ["Error bars are in columns beside the numbers."] if barred else []
 
 
 def _not_rated(result: Swept) -> list[str]:
