@@ -314,7 +314,7 @@ def test_what_is_singular_knows_fillets():
         return sorted(
             (round(place.y, 9), round(place.r, 9), round(place.exponent, 3))
             for place in places
-            if place.what.startswith(("shoulder", "chamfer"))
+            if place.what.startswith(("shoulder", "concave kink"))
         )
 
     # at right angles and at half of them beyond a straight one (Williams 1952)

@@ -45,6 +45,8 @@ from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of, other_flank
 from solidgear.trains.load.operation import Operating
 
+#: share of the largest mesh force of a train that is rounding
+IDLE = 1e-9
 #: bore below which a wheel is solid, of its root radius; least rim below the roots, modules
 SMALL_BORE, LEAST_RIM = HUB, 2 * PORT
 
@@ -308,8 +310,17 @@ def with_teeth(train: Train, carried: Carried, varies: str = "") -> Train:
     is carried: the train itself, or one that differs in the shapes of flanks alone.
     """
     meshes, planetary, cautions = [*train.meshes], dict(train.planetary), list[str]()
+    largest = max(map(abs, carried.state.mesh_forces.values()), default=0.0)
     for k, (pair, mesh) in enumerate(zip(train.pairs, train.meshes)):
-        if mesh.stiffness == TEETH:
+        if mesh.stiffness != TEETH:
+            continue
+        if abs(carried.state.mesh_forces[pair.name]) <= IDLE * largest:
+            meshes[k] = with_usual_meshes(train).meshes[k]
+            cautions.append(
+                f"{pair.name}: no torque presses these teeth together, so that a usual stiffness "
+                "stands in for that of contact"
+            )
+        else:
             solved = solved_mesh(carried, pair)
             meshes[k] = _filled(carried, pair, mesh, solved, pair.name == varies)
             cautions += solved.cautions

@@ -112,6 +112,7 @@ def checked_matrix(value: Any) -> tuple[tuple[float, ...], ...]:
     K = (K + K.T) / 2
     # a spring turned by the last digit of an angle has rounding across, and its square on the diagonal
     bare = np.abs(np.diag(K)) <= ROUNDING**2 * np.abs(K).max()
+    bare &= not isinstance(value, Mapping)  # entries by name are as somebody wrote them
     K[(bare[:, None] | bare) & (np.abs(K) <= ROUNDING * np.abs(K).max())] = 0.0
     while (least := _least_eigenvalue(K))[0] < -1e-9:
         eigenvalue, (first, second) = least
