@@ -56,6 +56,7 @@ class RicherSpace:
         self.scene, self.ports = scene, body.ports  # not the body, which keeps this
         geometry: HarmonicMesh = body.geometry  # type: ignore[assignment]
         self.flat = geometry.meridian  #: the mesh of the body
+        self._parent = geometry.parent  #: (ne,) cells before cuts towards corners
         self.order = geometry.order  #: of its elements
         self.rich = self.order + EXTRA  #: order of the richer space
         self._work = Work(scene, geometry)
@@ -77,7 +78,6 @@ class RicherSpace:
         mesh: of the cost of a corner of exponent a all but ``q^(2 a n)``, which n cuts of ratio q leave.
         NoBounds where cells cannot be so small that less than half of that cost remains.
         """
-        geometry: HarmonicMesh = self.body.geometry  # type: ignore[assignment]
         least = least_side(self.scene.length)
         for place in self.corners.values():
             if place.within(least) > 1 / 2:
@@ -89,9 +89,9 @@ class RicherSpace:
         out = np.ones(self.flat.cells.shape[1])
         for vertex, place in self.corners.items():
             if place.sharp:
-                around = geometry.parent[(self.flat.cells == vertex).any(axis=0)]
+                around = self._parent[(self.flat.cells == vertex).any(axis=0)]
                 left = CUT_RATIO ** (2 * place.exponent * LAYERS)
-                beside = np.isin(geometry.parent, around)
+                beside = np.isin(self._parent, around)
                 out[beside] = np.maximum(out[beside], 1 / (1 - left))
         return out
 
