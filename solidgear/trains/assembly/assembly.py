@@ -82,6 +82,8 @@ from solidgear.trains.load.contact import Contact
 REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
 #: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz, as the bound shows
 KEPT = 24
+#: modes kept of a shaft at rest, which needs none
+FEW = 6
 
 
 @dataclass(eq=False)

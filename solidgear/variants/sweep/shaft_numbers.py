@@ -9,13 +9,12 @@ from typing import Any
 from solidgear.bearings.duty import LivesOverPoints
 from solidgear.core import Scene, SolidgearError, build
 from solidgear.guards.one_shaft import ROUNDING, mass_of, round_mass
-from solidgear.strength.acting import FEW
 from solidgear.strength.deflection.at_rest import Measured, deflections
 from solidgear.strength.load import AT_REST
 from solidgear.strength.stress.at_rest import stress_at_rest
 from solidgear.strength.stress.notch_tables import not_rated
 from solidgear.strength.stress.rating import Rating
-from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.assembly import FEW, Assembly
 from solidgear.trains.assembly.shaft import JUDGE
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.lives import lives_in
@@ -76,10 +75,12 @@ def numbers_of(
     bars within a tolerance.
     """
     out: dict[str, Any] = {}
-    if DEFLECTION in ask:
-        out |= _deflection(scene, model or JUDGE, tolerance)
-    if BEARING in ask:
-        out |= life_numbers(_lives(scene))
+    if {DEFLECTION, BEARING} & {*ask}:
+        assembly = Assembly.of(scene, kept=FEW, tol=tolerance)
+        if DEFLECTION in ask:
+            out |= _deflection(assembly, model or JUDGE)
+        if BEARING in ask:
+            out |= life_numbers(_lives(assembly, model))
     if STRESS in ask:
         out |= _stress(scene, model or JUDGE)
     return out
@@ -101,9 +102,8 @@ def _points(assembly: Assembly) -> tuple[OperatingPoint, ...]:
     return assembly.train.operation or (AT_REST,)
 
 
-def _deflection(scene: Scene, model: str, tolerance: float | str | None) -> dict[str, Any]:
+def _deflection(assembly: Assembly, model: str) -> dict[str, Any]:
     """Return motions and loads of bearings, the largest of all cases."""
-    assembly = Assembly.of(scene, kept=FEW, tol=tolerance)
     out: dict[str, Any] = {}
     for solution in deflections(assembly, _points(assembly), model):
         for place, (x, _, z, thx, _, thz) in solution.displacement.items():
@@ -128,10 +128,12 @@ def _across(pair: Sequence[Measured]) -> tuple[float, float | None]:
     return value, math.hypot(*bars) if len(bars) == len(pair) else None
 
 
-def _lives(scene: Scene) -> list[LivesOverPoints]:
-    """Return the life of every catalogue bearing of a shaft in all cases of its loads."""
-    assembly = Assembly.of(scene, kept=FEW)
-    operating, states = Operating(assembly), list[OperatingState]()
+def _lives(assembly: Assembly, model: str | None) -> list[LivesOverPoints]:
+    """Return the life of every catalogue bearing of a shaft in all cases of its loads, by default on
+    the model that deflection trusts.
+    """
+    operating = Operating(assembly.settling(model), model) if model else Operating(assembly)
+    states = list[OperatingState]()
     for point in _points(assembly):
         states.append(operating.at(point, states[-1] if states else None))
     return lives_in(assembly.train, [states])
