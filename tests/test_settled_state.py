@@ -39,6 +39,12 @@ def box():
 
 @pytest.fixture(scope="module")
 def deflected(box):
+    """The state that deflection trusts."""
+    return deflection(Assembly(box), box.point, "harmonic")
+
+
+@pytest.fixture(scope="module")
+def on_beams(box):
     return deflection(Assembly(box), box.point, "timoshenko")
 
 
@@ -64,16 +70,17 @@ def test_lives_are_those_of_the_loads_that_deflect_shows(box, deflected):
     assert at_rest["pinion.B"].reference_life == pytest.approx(523e6, rel=3e-2)
 
 
-def test_a_row_has_the_lives_and_the_modes_of_the_file(box, deflected):
+def test_a_row_has_the_lives_and_the_modes_of_the_file(box, on_beams):
+    """Lives of the models of the row, modes on bearings as stiff as those of the file."""
     asked = ("bearing", "deflect", "system-modes")
     task = train_task(BOX, Design(("losses.mesh=0.05",)), ask=asked, n=3, **BEAMS)
     (row,) = task.rows([0])
-    at_rest = shaft_bearings(deflected)
+    at_rest = shaft_bearings(on_beams)
     assert row["status"] == "ok"
     for name, bearing in at_rest.items():
         assert row[f"{name}.life"] == pytest.approx(bearing.reference_life, rel=DIGITS)
         assert row[f"{name}.radial"] == pytest.approx(radial(bearing), rel=DIGITS)
-    skew = {measure.name: measure.value for measure in deflected.misalignment}
+    skew = {measure.name: measure.value for measure in on_beams.misalignment}
     assert row["misalignment_in_plane"] == pytest.approx(skew["in plane"], rel=DIGITS)
     modes = sg.system_modes(box, BEAMS, max_frequency=4000.0).modes
     elastic = [mode.frequency_hz for mode in modes if mode.frequency_hz > 0][:3]
@@ -81,13 +88,15 @@ def test_a_row_has_the_lives_and_the_modes_of_the_file(box, deflected):
 
 
 def test_bearings_are_as_stiff_as_at_the_loads_that_deflect_shows(box, deflected):
-    """What modes, responses and matrices read of the file."""
+    """What modes, responses and matrices read of the file, on a mesh whose loads are within 1e-4 of
+    those, as no beam is (8e-3).
+    """
     for name, bearing in shaft_bearings(deflected).items():
         side, end = name.split(".")
         (settled,) = (b for b in box.shafts[side].scene.bearings if b.name == end)
         size = np.abs(bearing.stiffness).max()
         assert np.array(settled.matrix) == pytest.approx(
-            np.array(bearing.stiffness), abs=1e-5 * size
+            np.array(bearing.stiffness), abs=2e-4 * size
         )
 
 
@@ -109,7 +118,7 @@ def test_every_operating_point_has_its_own_teeth(box):
     coast = box.point.with_changes(name="coast", torque=-90.0, share=0.4)
     table = box.with_changes(operation=(light, coast))
     assembly = Assembly(table)
-    operating = Operating(assembly)
+    operating = Operating(assembly, "timoshenko")
     lives = lives_in(table, [[operating.at(point) for point in (light, coast)]])
     (stiffness,) = tooth_stiffness(assembly)
     aside = []
@@ -177,8 +186,9 @@ def test_a_sheet_shows_lives_and_modes_of_its_own_point(box):
     expected = {
         lives.name: lives.points[0].life.life.reference for lives in lives_in(alone, [[state]])
     }
-    shown = lives_over_points(train, coast)
-    assert {name: fact.life for name, fact in shown.items()} == pytest.approx(expected, rel=DIGITS)
+    shown = lives_over_points(Assembly(train), coast)
+    # the first state decides the mesh, which is that of another point here
+    assert {name: fact.life for name, fact in shown.items()} == pytest.approx(expected, rel=2e-4)
     assert not any(fact.over_table for fact in shown.values())
 
 

@@ -119,7 +119,7 @@ def gearbox():
 
 
 def settled_at(train, torque, **more):
-    return Operating(Assembly(train)).at(OperatingPoint(torque=torque, **more))
+    return Operating(Assembly(train), "timoshenko").at(OperatingPoint(torque=torque, **more))
 
 
 # ----------------------------------------------------------------------- equilibrium
@@ -132,7 +132,7 @@ def test_displacement_of_a_helical_pinion_is_that_of_an_independent_model(helica
 
 
 def test_every_shaft_is_in_balance(gearbox):
-    state = Operating(gearbox).at(gearbox.train.operation[0])
+    state = Operating(gearbox, "timoshenko").at(gearbox.train.operation[0])
     forces = state.forces()
     for side in ("pinion", "gear"):
         total, size = np.zeros(6), 0.0
@@ -147,7 +147,7 @@ def test_every_shaft_is_in_balance(gearbox):
 
 
 def test_mesh_force_is_that_of_the_torque_and_stretches_the_teeth(gearbox):
-    state = Operating(gearbox).at(gearbox.train.operation[0])
+    state = Operating(gearbox, "timoshenko").at(gearbox.train.operation[0])
     radius = 0.030
     of_teeth = 115.0 / radius / cos(np.radians(20)) / cos(np.radians(15))
     assert state.mesh_force == pytest.approx(of_teeth, rel=1e-12)
@@ -187,7 +187,7 @@ def test_bevel_flanks_mirror_at_the_pitch_cone():
 
 
 def test_without_torque_clearance_is_told_and_no_stiffness_is_made_up(gearbox):
-    state = Operating(gearbox).at(OperatingPoint(torque=0.0))
+    state = Operating(gearbox, "timoshenko").at(OperatingPoint(torque=0.0))
     assert set(state.equilibrium.lost) == {"pinion.A", "gear.D"}
     assert not state.equilibrium.tangent["pinion.A"].any()
     assert any("pinion.A carries no load" in note for note in state.notes)
@@ -217,11 +217,11 @@ def test_a_belt_joins_the_mesh_force(helical):
 
 
 def test_stiffness_follows_the_torque(gearbox):
-    operating, last = Operating(gearbox), None
+    operating, last = Operating(gearbox, "timoshenko"), None
     stiffness = []
     for torque in (10.0, 50.0, 115.0, 300.0):
         last = operating.at(OperatingPoint(torque=torque), last)
-        alone = Operating(gearbox).at(OperatingPoint(torque=torque))
+        alone = Operating(gearbox, "timoshenko").at(OperatingPoint(torque=torque))
         # where the search begins does not matter: the equilibrium is one
         assert last.motion("pinion.A") == pytest.approx(alone.motion("pinion.A"), abs=1e-13)
         stiffness.append(last.equilibrium.tangent["pinion.A"][2, 2])
@@ -487,7 +487,7 @@ def test_a_load_that_is_not_the_mesh_force_is_refused_with_both(folder):
     assert "scene_load" in str(error.value)
     path.write_text(text.replace("[pinion]\n", '[pinion]\nscene_load = "added"\n'))
     train = sg.load_train(path)
-    state = Operating(Assembly(train)).at(train.operation[0])
+    state = Operating(Assembly(train), "timoshenko").at(train.operation[0])
     assert any("added" in note for note in state.notes)
     carried = sum(v[0] for end, v in state.equilibrium.load.items() if end.startswith("pinion"))
     alone = settled_at(sg.load_train(folder / "train.toml"), 100.0).equilibrium.load
@@ -535,7 +535,9 @@ def test_deflect_writes_what_it_says(tmp_path, run):
     model = data["models"]["timoshenko"]
     six = model["displacement"]["pinion"]
     assert list(six) == ["x", "y", "z", "thx", "thy", "thz"]
-    state = Operating(Assembly(sg.load_train(GEARBOX))).at(sg.load_train(GEARBOX).operation[0])
+    state = Operating(Assembly(sg.load_train(GEARBOX)), "timoshenko").at(
+        sg.load_train(GEARBOX).operation[0]
+    )
     assert six["z"]["value"] == pytest.approx(state.motion("pinion.pinion")[2], rel=1e-9)
     assert len(model["shafts"]["pinion"]["bearings"][0]["rows"][0]["element_load"]) == 13
     assert "f_sh" in said and "Mesh force 4223.3 N" in said

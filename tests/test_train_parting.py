@@ -78,7 +78,7 @@ def test_rows_of_a_sweep_tell_where_teeth_part_and_how_many_do(tmp_path):
     light, heavy = numbers(out)
     train = sg.load_train("geometry/gearbox_train.toml")
     point = train.operation[0].with_changes(torque=0.5)
-    there = with_settled_bearings(train, Operating(Assembly(train)).at(point))
+    there = with_settled_bearings(train, Operating(Assembly(train), "timoshenko").at(point))
     hz = np.array([light["parts_from_hz"]])
     force = np.abs(Drive(Assembly(there), *BEAMS).mesh(hz)[1][0])
     # straight between points of a grid whose middles are foretold within 0.25 dB

@@ -940,6 +940,14 @@ MUTATIONS = (
         "tests/test_settled_state.py::test_modes_that_higher_orders_meet_move_as_well",
     ),
     Mutation(
+        "bearing: loads and lives rest on another model than deflection trusts",
+        "solidgear/trains/load/operation.py",
+        "Operating.__init__",
+        "assembly.at_ports(), assembly.solids",
+        'assembly.settling("timoshenko"), ("timoshenko",)',
+        "tests/test_agree.py::test_bearings_have_one_load_and_one_life_by_every_command",
+    ),
+    Mutation(
         "teeth: bearings settle with the force at the middle of the face",
         "solidgear/trains/load/operation.py",
         "Operating._at",

@@ -40,7 +40,7 @@ from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import error_of
 from solidgear.trains.file.train import Train, named_pair
 from solidgear.trains.load.contact import LEVER_REFUSED, axes_of
-from solidgear.trains.load.operation import SHAFT, loop_forces, rotor_loads
+from solidgear.trains.load.operation import loop_forces, rotor_loads
 from solidgear.trains.modes.modes import refuse_unresolved, resolved_frequency
 
 #: the first frequency of a branch by default, over the highest
@@ -56,6 +56,8 @@ CYCLE_ORDERS, CYCLE_PLACES = 8, 4096
 STILL = 1e-12
 #: share of a mean force that the linear one must exceed where branches apart are looked for
 LIVELY = 0.2
+#: model of shafts whose loops of meshes divide a torque by their stiffness
+BEAM = "timoshenko"
 #: rotation about the shaft, of six components
 AXIAL = 4
 
@@ -211,7 +213,7 @@ def _by_torque(assembly: Assembly, point: OperatingPoint) -> dict[str, float]:
     """
     forces = mesh_forces(assembly.train, assembly.contacts, point)
     if None in assembly.train.flows.values():
-        system = assembly.system(SHAFT)
+        system = assembly.system(BEAM)
         motion = system.static(system.load(rotor_loads(assembly, point)))
         forces |= loop_forces(assembly, system, motion, point.label)
     return {pair.name: forces[pair.name] for pair in assembly.train.pairs}

@@ -30,9 +30,9 @@ from solidgear.strength.deflection.shaft import BearingState
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft, lesser_elsewhere
 from solidgear.strength.stress.rating import Rating
 from solidgear.strength.stress.shaft import Notch
+from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.train import Train
-from solidgear.trains.load.lives import train_lives
+from solidgear.trains.load.lives import lives_of
 
 #: share of P over C beyond which ISO 281 does not vouch for a life (ISO 281:2007, clause 1)
 MOST_LOAD = 0.5
@@ -89,10 +89,13 @@ def forces_alone(deflected: Deflections) -> tuple[Force, ...]:
     return tuple(sorted(loads, key=lambda force: force.y))
 
 
-def lives_over_points(train: Train, point: OperatingPoint | None = None) -> dict[str, BearingFact]:
+def lives_over_points(
+    assembly: Assembly, point: OperatingPoint | None = None
+) -> dict[str, BearingFact]:
     """Return lives of the catalogue bearings of a train at an operating point, by default the first, or
     of a shaft over its cases, over the duty table where there is one; empty without such bearings.
     """
+    train = assembly.train
     bearings = {
         bearing.name if train.is_one_shaft else f"{side}.{bearing.name}": bearing
         for side, shaft in train.shafts.items()
@@ -101,7 +104,7 @@ def lives_over_points(train: Train, point: OperatingPoint | None = None) -> dict
     if not train.operation or all(b.catalogue is None for b in bearings.values()):
         return {}
     out = {}
-    for lives in train_lives(train):
+    for lives in lives_of(assembly):
         first = lives.points[0]
         shown = next((p for p in lives.points if point and p.label == point.label), first)
         fact = life_fact(lives.name, bearings[lives.name], shown.life)

@@ -9,9 +9,8 @@ from solidgear.core import Record, Scene
 from solidgear.datasheet.numbers import recorded_numbers
 from solidgear.datasheet.page import save
 from solidgear.datasheet.shaft import shaft_sheet
-from solidgear.strength.acting import NO_MODES
 from solidgear.strength.load import AT_REST
-from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.assembly import NO_MODES, Assembly
 
 
 def recorded_sheet(record: Record, scene: Scene, language: str, path: Path) -> list[Path]:

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from typing import Any
 
+from solidgear.bearings import study
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.study import BearingFacts
 from solidgear.core import Scene, SolidgearError, load, number_cautions, without_axis
@@ -40,8 +41,8 @@ from solidgear.strength.deflection import at_rest
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.train import ALONE, Train
-from solidgear.trains.load.bearing import bearing
+from solidgear.trains.file.train import ALONE
+from solidgear.trains.load.operation import body_at_rest
 
 Progress = Callable[[str], None]
 #: orders of a shaft that excite it most: unbalance, and misalignment or a keyway
@@ -66,7 +67,7 @@ def shaft_sheet(
     settled = load(scene)
     numbers = numbers or answered_numbers(settled, tol, progress)
     turning = speed or point.speed or speed_of(settled)
-    lives = lives_of(assembly.train, speed or point.speed)
+    lives = lives_of(assembly, speed or point.speed)
     sheet = Datasheet(
         title=settled.title or settled.name,
         file=settled.name,
@@ -167,17 +168,17 @@ def case_of(scene: Scene) -> Remark | None:
     )
 
 
-def lives_of(train: Train, speed: float | None) -> dict[str, BearingFact]:
+def lives_of(assembly: Assembly, speed: float | None) -> dict[str, BearingFact]:
     """Return lives of the catalogue bearings of a shaft by name, over the cases of its loads where
     there are several; empty without any.
     """
-    scene = train.shafts[ALONE].scene
+    scene = assembly.train.shafts[ALONE].scene
     if not any(bearing.catalogue is not None for bearing in scene.bearings):
         return {}
     if len(scene.cases) > 1:
-        return lives_over_points(train)
-    solved = bearing(scene, speed=None if speed is None else f"{speed} rad/s")
-    return {fact.name: _alone(fact) for fact in solved.facts}
+        return lives_over_points(assembly)
+    facts = study.bearing_facts(scene, body_at_rest(assembly), speed)
+    return {fact.name: _alone(fact) for fact in facts}
 
 
 def _alone(fact: BearingFacts) -> BearingFact:

@@ -122,7 +122,6 @@ def _at_point(
     stressed = stress_at_rest(assembly, point, asked=settings)
     notch = worst_notch(stressed)
     shafts = {shaft.name: shaft for shaft in stressed.shafts}
-    solved = train.with_solved_meshes(assembly.teeth.solved)
     weight = [Remark("assumed weight")] if point.weight else []
     drawn = tuple(
         replace(
@@ -143,7 +142,7 @@ def _at_point(
         corners=sharp_corners(stressed),
         section=worst_section(stressed),
         absent=sheet.absent | absent_notch(stressed, notch),
-        bearings=bearing_facts(deflected, assembly.scenes, lives_over_points(solved, point)),
+        bearings=bearing_facts(deflected, assembly.scenes, lives_over_points(assembly, point)),
         motions=motions(deflected),
         assumed=(*sheet.assumed, *weight, *assumed_at_rest(stressed, notch)),
         cautions=(*sheet.cautions, *cautions_of_bearings(deflected), *cautions_of_notch(notch)),

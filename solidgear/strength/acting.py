@@ -24,14 +24,12 @@ from solidgear.core.scene.units import quantity
 from solidgear.show.command import Group
 from solidgear.show.options import CaseName, Named, refuse
 from solidgear.strength.load import AT_REST, driven
-from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.assembly import NO_MODES, Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import named_point
 from solidgear.trains.loading import load_train
 
-#: modes kept of a shaft at rest, which needs none: they are half of what a 3D body costs
-NO_MODES = 0
 #: torque as a text with a unit or a number in N m; None where it is not given
 Given: TypeAlias = str | float | None
 if TYPE_CHECKING:

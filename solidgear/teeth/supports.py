@@ -23,6 +23,7 @@ from typing import Any
 import numpy as np
 import scipy.linalg as sla
 
+from solidgear.bearings.solved import AS_STATED, Choice
 from solidgear.core import Scene, SolidgearError, System
 from solidgear.core.scene.stations import Port
 from solidgear.teeth.contact.cylindrical import CylindricalPair
@@ -48,6 +49,11 @@ EVEN = 24
 MARK = " face "
 #: of a gear: its middle from the lumped point, and its width, m
 Face = tuple[float, float]
+
+
+def on_beams(assembly: Assembly, choice: Choice = AS_STATED) -> Operating:
+    """Return a train of :func:`with_sections` to be put at rest on the beams that contact bends."""
+    return Operating(assembly.settling(SHAFT), SHAFT, choice=choice)
 
 
 @dataclass(frozen=True, eq=False)
@@ -78,7 +84,7 @@ class Carried:
         """Settle a train of :func:`with_sections` at an operating point; refused without a torque."""
         if point.torque == 0:
             raise SolidgearError("a torque of 0 N m presses no teeth together; give another one")
-        operating = Operating(Assembly(train))
+        operating = on_beams(Assembly(train))
         return cls(operating, operating.at(point))
 
     def at(self, point: OperatingPoint) -> Carried:

@@ -27,7 +27,7 @@ from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.contact.frame import Frame
 from solidgear.teeth.contact.local import Elasticity, LineContact
 from solidgear.teeth.mesh_contact import ORDERS, MeshContact
-from solidgear.teeth.supports import Carried, with_sections
+from solidgear.teeth.supports import Carried, on_beams, with_sections
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.gears import Member
@@ -43,7 +43,6 @@ from solidgear.trains.file.tip_rules import tip_problems
 from solidgear.trains.file.tooth_fit import parting_teeth
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.contact import axes_of, other_flank
-from solidgear.trains.load.operation import Operating
 
 #: share of the largest mesh force of a train that is rounding
 IDLE = 1e-9
@@ -300,7 +299,7 @@ class TeethOfTrain:
         """
         if self._assembly is None:
             self._assembly = Assembly(with_sections(with_usual_meshes(self.train)))
-        operating = Operating(self._assembly, choice=choice)
+        operating = on_beams(self._assembly, choice)
         carried = Carried(operating, operating.at(point), self._pairs)
         return with_teeth(self.train, carried, varies)
 

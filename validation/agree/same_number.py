@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import solidgear as sg
+from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from validation.agree.commands import (
     OF_A_BEAM,
     OF_A_SCENE,
@@ -27,10 +28,10 @@ KIND = "same number"
 #: between two commands that settle one state: what Newton's steps leave of a life, which goes with
 #: the third power of a load and more
 SETTLED = 1e-4
-#: between the line along which shafts are reckoned with cells of teeth and with one point of mesh
-BENDING = 0.1
-#: m: a bend that no flank is ground to
-NO_BENDING = 1e-8
+#: between two commands that wind up one gear by one formula: rounding
+WOUND = 1e-6
+#: of the area of a round section, what carries shear in a Timoshenko beam, at least
+SHEARED = 0.5
 
 
 def of_scene(scene: Path) -> Iterator[Relation]:
@@ -113,31 +114,68 @@ def _by_row_of_modes(train: Path) -> Numbers:
 
 
 def _bending(train: Path) -> Iterator[Relation]:
-    """How far shafts bend out of line under the teeth, by `contact` and by `deflect`."""
-    deflected, contact = run("deflect", train), run("contact", train, "--no-curve")
-    if not deflected.answered or not contact.answered:
+    """How far flanks open along the face as gears wind up, which is one number, and as shafts bend, by
+    `contact` and by `deflect` on the beams that contact bends.
+
+    `deflect` has the slope of the section in the middle of a rigid face, `contact` the line from end to
+    end of a face that bends and shears within itself under a load spread along it.  About the middle
+    only odd parts count: those of the shear force there, which is at most half of the force F of the
+    teeth, ``F / 2 (b / (kappa G A) + b^3 / (24 E I))`` for each shaft.
+    """
+    contact = run("contact", train, "--no-curve")
+    if not contact.answered:
         return
-    *_, model = deflected.data["models"].values()
-    for name, mesh in contact.data["meshes"].items():
-        norm = (model.get("face_load_norm") or {}).get(name)
-        if norm is not None:
-            a, b = norm["skew"], mesh["skew"]["bending"] + mesh["skew"]["turning"]
-            close = math.isclose(a, b, rel_tol=BENDING, abs_tol=NO_BENDING)
-            seen = f"{a:.5g} and {b:.5g} m"
-            yield Relation(train.name, KIND, f"f_sh of {name}: deflect, contact", close, seen)
+    # the force of solved teeth lies elsewhere on the face than where contact begins
+    loaded = with_usual_meshes(sg.load_train(train))
+    (model,) = sg.deflect(loaded, "timoshenko").as_dict()["models"].values()
+    for pair in loaded.pairs:
+        mesh = contact.data["meshes"].get(pair.name)
+        askew = model["misalignment"].get(f"f_sh{pair.label}")
+        if mesh is None or askew is None:
+            continue
+        wound = model["misalignment"][f"wind-up{pair.label}"]["value"]
+        turning = mesh["skew"]["turning"]
+        seen = f"{wound:.6g} and {turning:.6g} m"
+        close = math.isclose(wound, turning, rel_tol=WOUND)
+        yield Relation(train.name, KIND, f"wind-up of {pair.name}: deflect, contact", close, seen)
+        bent, bending = askew["value"] - wound, mesh["skew"]["bending"]
+        force = abs(model["mesh_forces"][pair.name])
+        most = sum(
+            _within_face(loaded, side, port, force) for side, port in zip(pair.shafts, pair.ports)
+        )
+        seen = f"{bent:.5g} and {bending:.5g} m, {most:.2g} m within the face"
+        close = abs(bent - bending) <= most
+        yield Relation(train.name, KIND, f"bending of {pair.name}: deflect, contact", close, seen)
 
 
-def lives(file: Path) -> Iterator[Relation]:
-    """Lives and loads of bearings by `deflect`, `bearing`, `sheet` and a row of `sweep`."""
+def _within_face(train: sg.Train, side: str, port: str, force: float) -> float:
+    """Return the most that a face bends and shears within itself, from end to end, m."""
+    scene = train.shafts[side].scene
+    middle = next(p for p in scene.ports if p.name == port).y
+    segment = next(s for s in scene.segments if s.y0 <= middle <= s.y1)
+    inner, outer = segment.radius_at(middle)
+    width = train.shafts[side].gears[port].face_width or 0.0
+    area, inertia = math.pi * (outer**2 - inner**2), math.pi * (outer**4 - inner**4) / 4
+    material = segment.material
+    shear_modulus = material.E / (2 * (1 + material.nu))
+    shear = width / (SHEARED * shear_modulus * area)
+    return force / 2 * (shear + width**3 / (24 * material.E * inertia))
+
+
+def lives(file: Path, sheet: bool = True) -> Iterator[Relation]:
+    """Lives and loads of bearings by `deflect`, `bearing`, a row of `sweep` and by choice `sheet`, which
+    takes most of the time.
+    """
     rated = run("bearing", file)
     if not rated.answered:
         return
     claims = {
         "bearing": _by_bearing(rated),
         "deflect": _by_deflect(run("deflect", file)),
-        "sheet": _by_sheet(file),
         "sweep": _by_row(file),
     }
+    if sheet:
+        claims["sheet"] = _by_sheet(file)
     for (first, numbers), (second, others) in combinations(claims.items(), 2):
         for name in sorted(numbers.keys() & others.keys()):
             a, b = numbers[name], others[name]
@@ -147,7 +185,7 @@ def lives(file: Path) -> Iterator[Relation]:
 
 
 def _by_bearing(printed: Printed) -> dict[str, float]:
-    """Lives at the first point of operation, in revolutions, and static safeties."""
+    """Lives in revolutions, at the first point of operation and over a table, and static safeties."""
     numbers = {}
     for row in printed.data["bearings"]:
         life = row["points"][0] if "points" in row else row.get("life")
@@ -156,6 +194,10 @@ def _by_bearing(printed: Printed) -> dict[str, float]:
                 f"reference life of {row['name']}": life["reference"],
                 f"static safety of {row['name']}": life["static_safety"],
             }
+        if row.get("duty"):
+            numbers[f"{row['duty']['of']} life of {row['name']} over the table"] = row["duty"][
+                "revolutions"
+            ]
         if "load" in row:
             numbers[f"radial load of {row['name']}"] = math.hypot(row["load"][0], row["load"][2])
     return numbers
@@ -186,8 +228,9 @@ def _by_sheet(file: Path) -> dict[str, float]:
         numbers[f"radial load of {row['name']}"] = row["radial"]
         if row.get("static_safety") is not None:
             numbers[f"static safety of {row['name']}"] = row["static_safety"]
-        if row.get("kind") == "reference":
-            numbers[f"reference life of {row['name']}"] = row["life"]
+        if row.get("kind"):
+            over = " over the table" * row["over_table"]
+            numbers[f"{row['kind']} life of {row['name']}{over}"] = row["life"]
     return numbers
 
 

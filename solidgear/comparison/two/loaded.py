@@ -8,10 +8,9 @@ from math import hypot, sqrt
 from solidgear.comparison.two.beside import NumberChange
 from solidgear.core import Scene, SolidgearError
 from solidgear.core.judge.change import Change
-from solidgear.strength.acting import NO_MODES
 from solidgear.strength.deflection.at_rest import Deflection, Measured, deflections
 from solidgear.strength.load import AT_REST
-from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.assembly import NO_MODES, Assembly
 from solidgear.trains.load.static_errors import FORBIDDEN
 
 #: motions across the shaft by their words: components, and SI unit

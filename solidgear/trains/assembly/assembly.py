@@ -81,6 +81,8 @@ from solidgear.trains.load.contact import Contact
 REDUCTIONS = {"rubin": rubin, "craig_bampton": craig_bampton}
 #: free modes of a shaft that are kept: with residuals, enough for 1e-5 to 4 kHz, as the bound shows
 KEPT = 24
+#: modes kept of a shaft at rest, which needs none: they are half of what a 3D body costs
+NO_MODES = 0
 
 
 @dataclass(eq=False)

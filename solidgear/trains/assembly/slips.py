@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from solidgear.core import build
-from solidgear.core.loading import SHAFT
 from solidgear.guards import data
 from solidgear.guards.notice import slip_in_units
 from solidgear.guards.probe import Probe
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.file.planetary import PlanetMesh
 
+#: model of shafts, whose data are all that counts
+SHAFT = "timoshenko"
 #: ranges that a slip of 1000 in the data of a mesh leaves: ISO 6336 puts some 20 N/(mm um) into a steel
 #: mesh, 0.1 of E times the face width, and a face is 0.1 to 3 lever arms wide; errors of teeth are
 #: some thousandths of the module at most, and no gear is ground to 1e-5 of it

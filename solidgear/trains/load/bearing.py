@@ -24,12 +24,16 @@ from solidgear.core import (
     is_train,
     name_of_source,
 )
-from solidgear.core.loading import as_written, shaft
+from solidgear.core.loading import as_written
 from solidgear.core.scene.load_rules import named_case
 from solidgear.core.scene.toml_file import name_of
 from solidgear.show.options import speed_of
 from solidgear.show.sheet import Sheet
 from solidgear.show.units import Units
+from solidgear.trains.assembly.assembly import NO_MODES, Assembly
+from solidgear.trains.load.lives import lives_of
+from solidgear.trains.load.operation import body_at_rest
+from solidgear.trains.loading import load_train
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -134,7 +138,8 @@ def bearing(
         scene = scene.with_case(case)
     first = named_case(scene.cases)
     with explained(source):
-        body = shaft(scene)
+        assembly = Assembly.of(scene, kept=NO_MODES)
+        body = body_at_rest(assembly)
         facts = [
             fact
             for fact in bearing_facts(scene, body, turns or first.speed)
@@ -142,28 +147,15 @@ def bearing(
         ]
         if not facts:
             raise SolidgearError(f"`name` {name}: no bearing of catalogue data has this name")
-        lives = _over_cases(scene, name) if len(scene.cases) > 1 else ()
+        over_cases = lives_of(assembly) if len(scene.cases) > 1 else []
+        lives = tuple(life for life in over_cases if name in (None, life.name))
     label = first.name if scene.cases else ""
     return SolvedBearings(scene.name, tuple(facts), lives, (), label, scene, body)
 
 
-def _over_cases(scene: Scene, name: str | None) -> tuple[LivesOverPoints, ...]:
-    """Return the lives of bearings of a shaft over the cases of its loads."""
-    # start-up: a shaft with one case has no use for the equilibrium of trains
-    from solidgear.trains.file.train import Train
-    from solidgear.trains.load.lives import train_lives
-
-    return tuple(life for life in train_lives(Train.of(scene)) if name in (None, life.name))
-
-
 def _of_train(source: Source, name: str | None) -> SolvedBearings:
     """Return the bearings of a train, or one of them."""
-    # start-up: bearings of a shaft have no use for the equilibrium of trains
-    from solidgear.trains.assembly.assembly import Assembly
-    from solidgear.trains.load.lives import lives_of
-    from solidgear.trains.loading import load_train
-
-    assembly = Assembly(load_train(source))
+    assembly = Assembly(load_train(source), kept=NO_MODES)
     lives = [life for life in lives_of(assembly) if name in (None, life.name)]
     if not lives:
         raise SolidgearError(

@@ -8,7 +8,7 @@ from solidgear.bearings.bearing_life import left_open, life_of
 from solidgear.bearings.duty import LivesOverPoints, PointLife
 from solidgear.bearings.solved import AS_STATED
 from solidgear.core import SolidgearError
-from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.assembly import NO_MODES, Assembly
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.load.state import OperatingState
@@ -18,11 +18,11 @@ def train_lives(train: Train) -> list[LivesOverPoints]:
     """Return the life of every catalogue bearing of a train at all operating points, or of a shaft
     alone in all cases of its loads; refused without points or catalogue bearings.
     """
-    return lives_of(Assembly(train))
+    return lives_of(Assembly(train, kept=NO_MODES))
 
 
 def lives_of(assembly: Assembly) -> list[LivesOverPoints]:
-    """Return the same by the assembly of a train."""
+    """Return the lives as :func:`train_lives`, on the models that deflection trusts."""
     train = assembly.asked_train
     if not train.operation:
         raise SolidgearError(

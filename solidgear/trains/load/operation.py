@@ -21,9 +21,10 @@ from functools import cached_property
 import numpy as np
 
 from solidgear.bearings.catalogued import Catalogued
-from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings
-from solidgear.core import SceneError, SolidgearError, System, listed
+from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings, wants_equilibrium
+from solidgear.core import Body, SceneError, SolidgearError, System, listed
 from solidgear.core.bounds.refining import Meshed
+from solidgear.core.loading import MESH
 from solidgear.core.scene.acting import station_loads
 from solidgear.core.scene.load_rules import named_case
 from solidgear.trains.assembly.assembly import Assembly
@@ -32,8 +33,8 @@ from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torque
 from solidgear.trains.assembly.mesh_errors import refine_meshes
 from solidgear.trains.assembly.shaft import JUDGE, Level
 from solidgear.trains.assembly.stages import mesh_row
-from solidgear.trains.file.operation import OperatingPoint
-from solidgear.trains.file.train import Train
+from solidgear.trains.file.operation import OperatingPoint, ShaftCase
+from solidgear.trains.file.train import ALONE, Train
 from solidgear.trains.load.meshes_at_rest import MeshesAtRest
 from solidgear.trains.load.own_weight import weight_at_rest
 from solidgear.trains.load.planet_loads import carrier_torques, centrifugal_load
@@ -47,8 +48,6 @@ from solidgear.trains.system.equilibrium import (
     seats_of,
 )
 
-#: model of all shafts on which bearings settle: loads hang little on how shoulders are modelled
-SHAFT = "timoshenko"
 #: a [load] of a scene that is off the mesh force by less, of it, is that force written down
 SAME_LOAD = 0.05
 #: trains at rest that are kept: one on each flank, or the last two whose teeth differ
@@ -63,8 +62,9 @@ LOOP = (
 
 class Operating:
     """A train with the shafts at models (bodies or ``rigid``, one for each shaft or one for all; by
-    default Timoshenko beams without cuts), to be settled at any operating point; `choice` is the
-    place in the ranges of catalogue data, and bearings with a load of their own are refused.
+    default those that deflection trusts, on which loads and lives of bearings rest), to be settled at
+    any operating point; `choice` is the place in the ranges of catalogue data, and bearings with a
+    load of their own are refused.
 
     Examples
     --------
@@ -79,8 +79,8 @@ class Operating:
 
     def __init__(self, assembly: Assembly, *models: str, choice: Choice = AS_STATED):
         if not models:
-            assembly = assembly.settling(SHAFT)
-        self.assembly, self.models, self.choice = assembly, models or (SHAFT,), choice
+            assembly, models = assembly.at_ports(), assembly.solids
+        self.assembly, self.models, self.choice = assembly, models, choice
         if assembly.train.is_one_shaft:
             return
         for side in assembly.train.shafts:
@@ -339,11 +339,11 @@ def rotor_loads(assembly: Assembly, point: OperatingPoint) -> dict[str, np.ndarr
 
 def mean_forces(assembly: Assembly, point: OperatingPoint) -> dict[str, float]:
     """Return the forces of all meshes at an operating point, N, of a planetary stage those of each
-    planet; those of a loop as Timoshenko shafts divide them under all that loads the train
-    there.
+    planet; those of a loop as harmonic shafts divide them under all that loads the train there.
     """
     if None in assembly.train.flows.values():
-        return Operating(assembly).at(point).mesh_forces
+        train = assembly.asked_train.with_solved_meshes(assembly.teeth.solved)
+        return before_motion(train, point).mesh_forces
     meshing = assembly.at(point)
     return mesh_forces(meshing.train, meshing.contacts, point)
 
@@ -403,9 +403,29 @@ def at_point(train: Train, word: str | int | None = None) -> Train:
 
 def settled_at(train: Train, point: OperatingPoint) -> Train:
     """Return a train with bearings settled at an operating point, which is its only one."""
-    state = Operating(Assembly(train)).at(point)
+    state = before_motion(train, point)
     solved = replace(state.assembly.teeth.solved, with_bearings=True)
     return with_settled_bearings(train, state).with_solved_meshes(solved)
+
+
+def before_motion(train: Train, point: OperatingPoint) -> OperatingState:
+    """Return the state at rest that motion is about, in which bearings have their stiffness: on
+    harmonic shafts of one mesh, as those of a shaft alone (:data:`solidgear.core.loading.MESH`).
+    """
+    assembly = Assembly(train, kept=1, settings={JUDGE: MESH}).settling(JUDGE)
+    return Operating(assembly, JUDGE).at(point)
+
+
+def body_at_rest(assembly: Assembly) -> Body | None:
+    """Return the body of a shaft alone on which loads and lives of its bearings rest, on the mesh that
+    its state at rest in the first case decides; None where no bearing waits for the load of the shaft.
+    """
+    if not wants_equilibrium(assembly.scenes[ALONE]):
+        return None
+    operating = Operating(assembly)
+    operating.at(assembly.train.point or ShaftCase())
+    (model,) = operating.models
+    return operating.assembly.shaft_model(ALONE, model).body
 
 
 def named_point(train: Train, word: str | int | None) -> OperatingPoint:

@@ -12,10 +12,9 @@ import numpy as np
 from solidgear.core import SolidgearError
 from solidgear.core.plain import plain
 from solidgear.show.words import hertz
-from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.kinematics import SLIP, angles_of, settled_angles, train_orders
 from solidgear.trains.file.train import PerTurn, Train
-from solidgear.trains.load.operation import Operating
+from solidgear.trains.load.operation import before_motion
 from solidgear.trains.modes.modes import TrainMode
 from solidgear.trains.response.spectrum import Spectrum
 
@@ -218,7 +217,7 @@ def _angles(train: Train) -> dict[str, tuple[float, ...]]:
     the operating point of the train, or without one at the loads of the scenes.
     """
     if train.point is not None:
-        state = Operating(Assembly(train)).at(train.point)
+        state = before_motion(train, train.point)
         return angles_of(state.bearings, state.equilibrium.relative)
     return {
         f"{side}.{name}": angles

@@ -55,7 +55,6 @@ from solidgear.core.body import Supports
 from solidgear.core.judge.correlation import FOREIGN
 from solidgear.core.judge.open_numbers import InputRecord, IntervalRecord, OpenRecord, SampledRecord
 from solidgear.core.judge.quantities import in_order, measure
-from solidgear.core.loading import SHAFT
 from solidgear.core.scene.uncertain import with_scaled_entry
 from solidgear.core.solve.neighbours import best_assignment
 from solidgear.core.solve.statics import condense
@@ -64,6 +63,8 @@ from solidgear.variants.budget.questions import Question, questions
 
 Progress = Callable[[str], None]
 Place = tuple[float, ...]
+#: model of the ranges, of which ratios count: thousands of points are solved
+BEAM = "timoshenko"
 #: most open inputs of which every corner is solved, and of which ranges stand beside error bars
 MOST_OF_ALL_CORNERS, MOST_BESIDE_BARS = 4, 12
 #: points of the sample inside
@@ -439,7 +440,7 @@ class Points:
     """Numbers of a scene at points of the ranges of its open inputs.
 
     A body gives stiffnesses, and no frequencies; by default, and where one of several moduli is
-    open, the beam of :data:`solidgear.core.loading.SHAFT`, made anew for every material.
+    open, the beam of :data:`BEAM`, made anew for every material.
     """
 
     def __init__(self, scene: Scene, inputs: Sequence[OpenInput], body: Body | None = None):
@@ -468,7 +469,7 @@ class Points:
     @property
     def model(self) -> str:
         """Model that the numbers are of."""
-        return SHAFT if self.body is None else self.body.fidelity
+        return BEAM if self.body is None else self.body.fidelity
 
     def numbers(self, place: Sequence[float]) -> dict[Quantity, float]:
         """Return the numbers at a point, a place in every range; SolidgearError if bearings hold
@@ -483,7 +484,7 @@ class Points:
         if self.body is None or wants_equilibrium(scene):
             key = tuple(segment.material for segment in scene.segments)
             if key not in self._beams:
-                self._beams = {key: build(scene.plain, SHAFT)}
+                self._beams = {key: build(scene.plain, BEAM)}
             beam = self._beams[key]
         on_beam = beam if wants_equilibrium(scene) else None
         rest = solved(scene, on_beam, _choice(values), self._near(place))

@@ -9,13 +9,12 @@ from typing import Any
 from solidgear.bearings.duty import LivesOverPoints
 from solidgear.core import Scene, SolidgearError
 from solidgear.core.ladder import solid_of
-from solidgear.strength.acting import NO_MODES
 from solidgear.strength.deflection.at_rest import Measured, deflections
 from solidgear.strength.load import AT_REST
 from solidgear.strength.stress.at_rest import StressSettings, stress_at_rest
 from solidgear.strength.stress.notch_tables import not_rated
 from solidgear.strength.stress.rating import Rating
-from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.assembly import NO_MODES, Assembly
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.lives import lives_in
 from solidgear.trains.load.operation import Operating
@@ -77,10 +76,12 @@ def numbers_of(
     bars within a tolerance.
     """
     out: dict[str, Any] = {}
-    if DEFLECTION in ask:
-        out |= _deflection(scene, model or solid_of(scene), tolerance)
-    if BEARING in ask:
-        out |= life_numbers(_lives(scene))
+    if {DEFLECTION, BEARING} & {*ask}:
+        assembly = Assembly.of(scene, kept=NO_MODES, tol=tolerance)
+        if DEFLECTION in ask:
+            out |= _deflection(assembly, model or solid_of(scene))
+        if BEARING in ask:
+            out |= life_numbers(_lives(assembly, model))
     if STRESS in ask:
         out |= _stress(scene, model or "")
     return out
@@ -91,9 +92,8 @@ def _points(assembly: Assembly) -> tuple[OperatingPoint, ...]:
     return assembly.train.operation or (AT_REST,)
 
 
-def _deflection(scene: Scene, model: str, tolerance: float | str | None) -> dict[str, Any]:
+def _deflection(assembly: Assembly, model: str) -> dict[str, Any]:
     """Return motions and loads of bearings, the largest of all cases."""
-    assembly = Assembly.of(scene, kept=NO_MODES, tol=tolerance)
     out: dict[str, Any] = {}
     for solution in deflections(assembly, _points(assembly), model):
         for place, (x, _, z, thx, _, thz) in solution.displacement.items():
@@ -118,10 +118,12 @@ def _across(pair: Sequence[Measured]) -> tuple[float, float | None]:
     return value, math.hypot(*bars) if len(bars) == len(pair) else None
 
 
-def _lives(scene: Scene) -> list[LivesOverPoints]:
-    """Return the life of every catalogue bearing of a shaft in all cases of its loads."""
-    assembly = Assembly.of(scene, kept=NO_MODES)
-    operating, states = Operating(assembly), list[OperatingState]()
+def _lives(assembly: Assembly, model: str | None) -> list[LivesOverPoints]:
+    """Return the life of every catalogue bearing of a shaft in all cases of its loads, by default on
+    the model that deflection trusts.
+    """
+    operating = Operating(assembly.settling(model), model) if model else Operating(assembly)
+    states = list[OperatingState]()
     for point in _points(assembly):
         states.append(operating.at(point, states[-1] if states else None))
     return lives_in(assembly.train, [states])

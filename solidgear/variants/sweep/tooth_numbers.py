@@ -13,13 +13,12 @@ import numpy as np
 
 from solidgear.teeth.contact.cylindrical import CylindricalPair
 from solidgear.teeth.study import touching
-from solidgear.teeth.supports import Carried, with_sections
+from solidgear.teeth.supports import Carried, on_beams, with_sections
 from solidgear.teeth.train_teeth import solved_mesh, with_teeth
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
-from solidgear.trains.load.operation import Operating
 
 #: beginnings of columns: transmission error under load from peak to peak and by order of the mesh,
 #: tangent stiffness of the teeth, face load factor, and largest pressure; and their units
@@ -90,7 +89,7 @@ class TeethBench:
                 return state
         sectioned = with_sections(with_usual_meshes(train))
         if not self._states:
-            operating = Operating(Assembly(sectioned))
+            operating = on_beams(Assembly(sectioned))
         else:
             _, first = self._states[0]
             operating = first.operating.with_points(sectioned)

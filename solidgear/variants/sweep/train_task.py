@@ -14,20 +14,21 @@ from solidgear.core import (
     Source,
     read_tolerance,
 )
+from solidgear.core.loading import MESH
 from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
 from solidgear.teeth.study import touching
 from solidgear.teeth.train_teeth import solved_mesh, with_teeth
-from solidgear.trains.assembly.assembly import KEPT, Assembly
+from solidgear.trains.assembly.assembly import KEPT, NO_MODES, Assembly
 from solidgear.trains.assembly.mesh_stiffness import asks_for_teeth, solved_meshes
-from solidgear.trains.assembly.shaft import LUMPED, checked_model, usual_models
+from solidgear.trains.assembly.shaft import JUDGE, LUMPED, checked_model, usual_models
 from solidgear.trains.assembly.turn import over_a_turn, stages_over_a_turn
 from solidgear.trains.file.flanks import Flanks
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import Train
 from solidgear.trains.load.lives import lives_in
-from solidgear.trains.load.operation import SHAFT, Operating, with_settled_bearings
+from solidgear.trains.load.operation import Operating, with_settled_bearings
 from solidgear.trains.load.state import OperatingState
 from solidgear.trains.modes.modes import refuse_unresolved
 from solidgear.trains.modes.parting import joint_name, parting_frequency, teeth_relief
@@ -83,6 +84,11 @@ class TrainTask(FileTask):
     def bench(self) -> Bench:
         """Shafts and trains kept from row to row."""
         return Bench(self.reduction, self.kept, self.settings, self.tolerance, self.max_frequency)
+
+    @cached_property
+    def settling(self) -> Bench:
+        """Shafts on which bearings find the stiffness that motion sees, by whichever model."""
+        return Bench(self.reduction, NO_MODES, {JUDGE: MESH})
 
     @cached_property
     def teeth(self) -> TeethBench:
@@ -233,26 +239,33 @@ class TrainTask(FileTask):
         """Return a train whose bearings have settled at an operating point, and its numbers there but
         for those of teeth.
         """
-        on_shafts = (SHAFT,) * len(self.models)
-        state = self.bench.operating(key, train, *on_shafts).at(point)
-        at_rest = with_settled_bearings(state.assembly.train, state)
-        out = _loads(state, at_rest)
+        at_rest, out = train, {}
+        if {MODES, RESPONSE} & {*self.ask}:
+            moved_about = self.settling.operating(key, train, JUDGE).at(point)
+            at_rest = with_settled_bearings(moved_about.assembly.train, moved_about)
+            out = _loads(moved_about, at_rest)
+        if {DEFLECTION, BEARING} & {*self.ask}:
+            out |= self._loaded(key, train, point)
+        return at_rest, out
+
+    def _loaded(self, key: Hashable, train: Train, point: OperatingPoint) -> dict[str, Any]:
+        """Return loads, lives and deflection of a train on the models of the rows."""
+        models = tuple(map(statics_of, self.models.values()))
+        operating = self.bench.operating(key, train, *models)
+        state = operating.at(point)
+        out = _loads(state, with_settled_bearings(state.assembly.train, state))
         if BEARING in self.ask:
-            operating = self.bench.operating(key, train, *on_shafts)
             out |= life_numbers(lives_in(train, [duty_states(train, operating, state)]))
         if DEFLECTION in self.ask:
-            models = tuple(map(statics_of, self.models.values()))
-            operating = self.bench.operating(key, train, *models)
-            deflected = state if models == on_shafts else operating.at(point)
-            for measure in misalignment(deflected.assembly, deflected.system):
-                out[misaligned(measure.name)] = float(measure.row @ deflected.coordinates)
-            for turn in over_a_turn(operating.assembly, deflected, deflected.models):
+            for measure in misalignment(state.assembly, state.system):
+                out[misaligned(measure.name)] = float(measure.row @ state.coordinates)
+            for turn in over_a_turn(operating.assembly, state, state.models):
                 out[once(turn.stage)] = max(planet.once for planet in turn.planets)
-            for end, load in deflected.equilibrium.load.items():
+            for end, load in state.equilibrium.load.items():
                 # across the shaft, along it and against tilting
                 loads = np.hypot(load[0], load[2]), load[1], np.hypot(load[3], load[5])
                 out |= {f"{end}.{name}": float(value) for name, value in zip(LOADS, loads)}
-        return at_rest, out
+        return out
 
     # ------------------------------------------------------------------------------ moving
     def _moving(self, train: Train, at_rest: Mapping[str, Any]) -> dict[str, Any]:
