@@ -248,7 +248,7 @@ def test_points_of_a_deck_are_named_by_nodes_and_doubtful_units_are_told(tmp_pat
     path.write_text(text.replace('matrices = "box.npz"\n', f'{points}units = "mm-t-N"\n'))
     train = sg.load_train(path)
     assert train.housing.mass == pytest.approx(box.rigid_mass[0, 0], rel=1e-9)
-    assert not any("unusual" in text for text in Assembly(train).cautions)
+    assert not any("unusual" in text for text in Assembly(train).cautions())
     path.write_text(text.replace('matrices = "box.npz"\n', points))
     (said,) = (text for text in Assembly(sg.load_train(path)).cautions if "unusual" in text)
     assert "as of millimetres, tonnes and newtons: units = 'mm-t-N'" in said

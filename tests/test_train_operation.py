@@ -193,7 +193,7 @@ def test_without_torque_clearance_is_told_and_no_stiffness_is_made_up(gearbox):
     assert any("pinion.A carries no load" in note for note in state.notes)
     resting = at_point(gearbox.train.with_changes(operation=({"torque": 0.0},)))
     assert resting.unloaded == ("pinion.A", "gear.D")
-    assert any("pinion.A carries no load" in c for c in Assembly(resting).cautions)
+    assert any("pinion.A carries no load" in c for c in Assembly(resting).cautions())
 
 
 def test_weight_is_carried_by_the_bearings(helical):
