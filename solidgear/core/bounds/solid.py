@@ -36,8 +36,9 @@ from solidgear.core.bounds.harmonic import (
     shares_blocks,
     with_neighbours,
 )
+from solidgear.core.bounds.layers import Layers
 from solidgear.core.bounds.narrow import RIGID, mesh_of, narrow_share
-from solidgear.core.bounds.safety import ACROSS, LEAST, LOCKING, MISSING, SLOWER
+from solidgear.core.bounds.safety import LEAST, MISSING, SLOWER
 from solidgear.core.bounds.singular_places import sharpest_exponent
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import NoBounds
@@ -129,7 +130,6 @@ def solid_bounds(
     :func:`solidgear.core.bounds.harmonic.harmonic_bounds`.
     """
     _refuse_cut_seats(scene, body)
-    _refuse_locked_layers(scene, body)
     share = share_of_error(scene, body)
     size = 6 * len(body.ports)
     reached = np.zeros((size, size))
@@ -192,36 +192,20 @@ def _refuse_cut_seats(scene: Scene, body: Body) -> None:
             )
 
 
-def _refuse_locked_layers(scene: Scene, body: Body) -> None:
-    """Refuse a mesh with one cell across a bonded layer that hardly changes its volume: it locks, and in
-    one order more too, so that most of the error remains unseen.
-    """
-    mesh = mesh_of(body)
-    if without_axis(scene) or mesh is None:
-        return
-    for k, (before, layer, after) in enumerate(
-        zip(scene.segments, scene.segments[1:], scene.segments[2:]), 1
-    ):
-        bonded = layer.material not in (before.material, after.material)
-        inside = mesh.segment == k
-        if layer.material.nu <= LOCKING or not bonded or not inside.any():
-            continue
-        y = mesh.mesh.p[1][mesh.mesh.t[:, inside]]
-        if np.median(np.ptp(y, axis=0)) > ACROSS * layer.length:
-            raise NoBounds(
-                f"{layer.name!r}, of Poisson's ratio {layer.material.nu:g} between other materials, is "
-                "one cell thick, and such a layer locks unseen: use smaller cells there",
-                finer_helps=True,
-            )
-
-
 def share_of_error(scene: Scene, body: Body) -> float:
-    """Return the largest energy of an error of a 3D body over that which one order more finds of it."""
+    """Return the largest energy of an error of a 3D body over that which one order more finds of it;
+    refuse a mesh on which it finds next to nothing.
+    """
     element = body.mesh["element"]
     order = ELEMENTS[element].order
     share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body)))
     if not without_axis(scene):
         share = max(share, narrow_share(scene, body, order))
+    mesh = mesh_of(body)
+    if mesh is not None:
+        layers = Layers.of(scene, body, mesh)
+        layers.refuse_locked()
+        share += layers.added_share
     return share * SLOWER.get(element, 1.0)
 
 
