@@ -45,7 +45,7 @@ from solidgear.core.errors import NoBounds
 from solidgear.core.kernel.room import MB
 from solidgear.core.machine.memory import NoRoom, require
 from solidgear.core.machine.processes import give_back
-from solidgear.core.meshing.corners import SHOULDER, is_notched
+from solidgear.core.meshing.corners import notch_exponent
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.models.solid.seat_faces import Seats
 from solidgear.core.scene.shaft import without_axis
@@ -211,13 +211,15 @@ def share_of_error(scene: Scene, body: Body) -> float:
 
 def _sharpest(scene: Scene, body: Body) -> float:
     """Return the exponent of displacement at the sharpest edge of a body, with or without an axis."""
+    mesh = mesh_of(body)
+    # edges of a part from a file stand in its mesh, as those of its round part do in the outline
+    notch = 1.0 if mesh is None or scene.body is None else notch_exponent(mesh.mesh)
     if not without_axis(scene):
         rigid = [port.name for port in body.ports if port.attachment == "rigid"]
-        return sharpest_exponent(scene, rigid)
+        return min(sharpest_exponent(scene, rigid), notch)
     patches = [s for s in scene.stations if getattr(s, "patch", None) is not None]
-    notched = is_notched(body.geometry.mesh)  # type: ignore[union-attr]
     return min(
-        SHOULDER if notched else CONVEX,
+        notch if notch < 1 else CONVEX,
         RIGID if any(s.attachment == "rigid" for s in patches) else CONVEX,
         PATCH if patches else CONVEX,
     )
