@@ -7,7 +7,9 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.core.meshing.corners import corner_exponent, sharpest_corner
+from solidgear.core.bounds.singular_places import sharpest_exponent
+from solidgear.core.bounds.solid import share_of_error
+from solidgear.core.meshing.corners import SHOULDER, corner_exponent, sharpest_corner
 from tests.shafts import shaft
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
@@ -113,3 +115,12 @@ def test_sharpest_corner_of_shipped_scenes():
     # 40 mm to 60 mm of radius over 60 mm
     angle, _ = sharpest_corner(sg.load(GEOMETRY / "shaft_hollow.toml"))
     assert angle == pytest.approx(math.pi + math.atan(20 / 60), abs=1e-12)  # rounding
+
+
+def test_a_slot_in_a_smooth_part_of_a_file_is_a_notch():
+    """Its round part has no corner, and bars of its 3D solid took it for smooth: 1.25 for 1.7."""
+    scene = sg.load(Path(__file__).parent / "found/parts/slot_shallow.toml")
+    assert sharpest_exponent(scene) == 1.0
+    body = sg.build(scene, "solid", refinement=0.3)
+    right_angle = 1 / (1 - (2 / 3) ** (4 * SHOULDER))
+    assert share_of_error(scene, body) == pytest.approx(right_angle, rel=1e-3)

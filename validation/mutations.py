@@ -358,6 +358,14 @@ MUTATIONS = (
         "tests/test_bounds_solid.py::test_bars_hold_and_are_hardly_wider_than_errors",
     ),
     Mutation(
+        "bounds of 3D solids: the rim of a layer is seen as any other edge",
+        "solidgear/core/bounds/layers.py",
+        "Layers.added_share",
+        "RIM * (2 * nu) ** 4",
+        "0.0 * (2 * nu) ** 4",
+        "tests/test_layers.py::test_bars_hold_on_even_meshes_of_others",
+    ),
+    Mutation(
         "bounds of 3D solids: bearings do not push a mode",
         "solidgear/core/bounds/solid.py",
         "errors_of_modes",

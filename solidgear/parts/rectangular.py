@@ -21,6 +21,8 @@ if TYPE_CHECKING:
 #: since waves along an edge are longer than those across: every edge is divided by a multiple of this,
 #: and meshes of refinements 1/4, 1/2, 1 and so on are nested
 CELLS = 4
+#: widths closer than this part of themselves are equal
+SAME = 1e-6
 
 
 def block_body(
@@ -47,7 +49,8 @@ def block_mesh(
     scene: Scene, wanted: Sequence, element: str, size: float | None, refinement: float
 ) -> Mesh:
     """Return boxes with a line at every section, their number along an edge by its length beside the
-    shortest, or of one size; tetrahedra are refused.
+    shortest, or of one size; tetrahedra are refused. Between two rigid faces they are no wider at the
+    free rim than they are thick: a layer gives way there.
 
     Meshes whose refinements are one twice the other are nested, so that frequencies fall from one
     to the next.
@@ -63,6 +66,11 @@ def block_mesh(
     along = sorted({0.0, y, *(s.y for s, _ in wanted if s.patch is None)})
     places = (-x / 2, x / 2), along, (-z / 2, z / 2)
     lines = [_divided(marks, cell, refinement) for marks, cell in zip(places, sizes)]
+    rigid = {FACES.index(s.patch.name) for s, tie in wanted if s.patch and tie == "rigid"}
+    for axis in range(3):
+        if {2 * axis, 2 * axis + 1} <= rigid:
+            across = np.diff(lines[axis]).max()
+            lines = [line if k == axis else _to_rims(line, across) for k, line in enumerate(lines)]
     assemblable(prod(len(line) - 1 for line in lines), 27)
     boxes = MeshHex.init_tensor(*lines)
     # scikit-fem's are left-handed, and x mirrors
@@ -76,3 +84,10 @@ def _divided(places: Sequence[float], size: float, refinement: float) -> np.ndar
         cells = max(1, round(refinement * ceil((b - a) / size - 1e-9)))
         out.append(np.linspace(a, b, cells + 1)[1:])
     return np.concatenate(out)
+
+
+def _to_rims(line: np.ndarray, width: float) -> np.ndarray:
+    """Return a line with its first and last cell halved until they are no wider than some width."""
+    while line[1] - line[0] > (1 + SAME) * width:
+        line = np.insert(line, [1, -1], [(line[0] + line[1]) / 2, (line[-2] + line[-1]) / 2])
+    return line

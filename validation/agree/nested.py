@@ -36,9 +36,18 @@ def of_scene(scene: Path, tolerances: tuple[float, ...] = TOLERANCES) -> Iterato
 
 
 def of_body(body: Path) -> Iterator[Relation]:
-    """Stiffness and modes of a body without an axis on coarser and finer meshes."""
+    """Stiffness and modes of a body without an axis on coarser and finer meshes, and on that which
+    the program chooses.
+    """
     for function in (by_stiffness, by_modes):
         claims = {
-            f"refinement {r}": function(body, "--set", f"refinement={r}") for r in REFINEMENTS
+            f"refinement {r}": function(body, "-f", "solid", "--set", f"refinement={r}")
+            for r in REFINEMENTS
+        }
+        claims["default"] = function(body)
+        # where a mesh has no bars its numbers claim nothing
+        claims = {
+            mesh: {name: n for name, n in numbers.items() if n.low < n.high}
+            for mesh, numbers in claims.items()
         }
         yield from meeting(body.name, KIND, claims)

@@ -21,10 +21,11 @@ SLOWER: dict[str, float] = _MEASURED["one order more"]["slower"]
 MISSING: float = _MEASURED["one order more"]["missing"]
 #: of the lower side: volume and seats of a mesh are not quite those of the body
 LEAST: float = _MEASURED["one order more"]["least"]
-#: Poisson's ratio from which on a bonded layer one cell thick locks, and share of it that most of its
-#: cells reach across
-LOCKING: float = _MEASURED["bonded layers"]["ratio"]
-ACROSS: float = _MEASURED["bonded layers"]["across"]
+#: Poisson's ratio from which on a layer that is held on both sides locks where it is one cell thick
+LOCKING: float = _MEASURED["held layers"]["ratio"]
+#: what cells as wide as such a layer is thick add at its rim to the energy of an error over that in
+#: one order more, at a Poisson's ratio of 1/2
+RIM: float = _MEASURED["held layers"]["rim"]
 #: distance from a narrow seat that cells of first order see, over their depth
 REACH: float = _MEASURED["narrow seats"]["reach"]
 #: factor by which cells of first order are too stiff in a gap between rigid seats as wide as they are

@@ -24,7 +24,7 @@ from solidgear.core.body import Body, as_supports
 from solidgear.core.bounds.refining import Meshed
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.answer import read_tolerance, solve_cheapest
-from solidgear.core.judge.bounded import mode_bars, static_bars
+from solidgear.core.judge.bounded import NOTHING_BEYOND, mode_bars, static_bars
 from solidgear.core.judge.quantities import at_points, between
 from solidgear.core.judge.question import FamilySolver, Listing, build_families
 from solidgear.core.judge.refinement import FINER_FILE, NO_FINER, Progress, Refinement, mesh_words
@@ -235,8 +235,9 @@ def _settled_body(
             break
         options = level
         largest = max(bars.values(), default=math.inf)
-        reached = largest <= tol
-        chosen = reached or mesh is meshes[-1]
+        reached = largest <= tol and not without_bars
+        # finer cells do not part modes that lie side by side
+        chosen = reached or mesh is meshes[-1] or without_bars == NOTHING_BEYOND
         reason = ""
         if chosen and not reached:
             reason = without_bars or (NO_FINER if block else FINER_FILE)
@@ -284,6 +285,8 @@ def _judged_body(
             listed = modes(body, scene, scene.ask.modes)
             by_name = mode_bars(scene, body, supports, listed)
             bars |= {Quantity(name): bar for name, bar in by_name.items()}
+            if not by_name and any(mode.frequency_hz > 0 for mode in listed.modes):
+                return body, bars, NOTHING_BEYOND
     except NoBounds as error:
         return body, {}, str(error)
     return body, bars, ""

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body
+from solidgear.core.bounds.layers import carrying
 from solidgear.core.bounds.narrow import EXPONENTS
 from solidgear.core.bounds.singular_places import Place, Singular, singular_places
 from solidgear.core.kernel.assembly import reference
@@ -162,19 +163,9 @@ def _ends_of_patches(scene: Scene, body: Body, mesh: SolidMesh) -> Iterator[Spot
         patch = getattr(stations[port.name], "patch", None)
         if patch is None:
             continue
-        on_patch = _carrying(body, index)[corners].all(axis=0)
+        on_patch = carrying(body, index)[corners].all(axis=0)
         numbers, times = np.unique(edges[:, on_patch], return_counts=True)
         border = np.unique(mesh.mesh.edges[:, numbers[times == 1]])
         if len(border):
             what, exponent = f"end of patch {patch.name}", EXPONENTS[port.attachment]
             yield Spots(what, mesh.mesh.p[:, border], patch.extent, exponent)
-
-
-def _carrying(body: Body, index: int) -> np.ndarray:
-    """Return which nodes of a body in one block carry the loads on a port."""
-    (block,) = body.blocks
-    weights = abs(block.ports[6 * index : 6 * index + 6]).sum(axis=0)
-    moved = np.asarray(weights).ravel() > 0
-    if block.expand is not None:
-        moved = np.asarray(abs(block.expand) @ moved.astype(float)) > 0
-    return np.any(moved.reshape(-1, 3), axis=1)

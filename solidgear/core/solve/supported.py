@@ -75,8 +75,12 @@ class Supported:
         self._mass_free = self.mass(self.free) if self.free.shape[1] else self.free
         #: (n, r) root of the stiffness of the springs, ``load @ load.T``
         self.load = self._root_on_ports(spring)
+        #: (r,) springs that stand for constraints
+        self._held = np.zeros(self.load.shape[1], bool)
         self._fast = False
         if self.load.shape[1]:
+            stiffness = (root_of(self._on_group(spring)) ** 2).sum(axis=0)
+            self._held = stiffness > FAST
             self._fast = np.abs(spring).max() > FAST
             self._through = self._free_inverse(self.load)
             self._inner = _solver(np.eye(self.load.shape[1]) + self.load.T @ self._through)
@@ -283,12 +287,13 @@ class Supported:
         """Return the (r, k) stretch ``L'u`` of the springs, the root of their energy, of (n, k)
         displacements under loads ``(K + springs + shift M) u``, roughly.
 
-        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, it
-        comes from the load instead.
+        Where the springs are so stiff that the motion of their seat is the rounding of ``u``, or stand
+        for constraints, it comes from the load instead: in a soft body the seat is left with more than
+        rounding, since it came to rest by the difference of two rigid motions.
         """
         out = self.load.T @ u
         if self.load.shape[1]:
-            lost = np.abs(out) < ROUNDED * self.spread(u)
+            lost = self._held[:, None] | (np.abs(out) < ROUNDED * self.spread(u))
             if lost.any():
                 out = np.where(lost, self._inner(self._through.T @ loads), out)
         return out
