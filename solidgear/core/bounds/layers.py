@@ -52,9 +52,10 @@ class Rims:
     depth: np.ndarray  #: (k,) of the cell there, from the held face inwards, m
     material: np.ndarray  #: (k,) number of that which is held
 
-    def across(self, opposite: bool) -> np.ndarray:
-        """Return the distance (k,) of the nearest rim of another face, m: of one opposite, with the
-        material between, or of one that lies beside it; infinite without any.
+    @property
+    def across(self) -> np.ndarray:
+        """Distance (k,) of the nearest rim of a face opposite, with the material between, m; infinite
+        without any.
         """
         distance = np.full(self.face.shape, np.inf)
         for face in np.unique(self.face):
@@ -65,11 +66,8 @@ class Rims:
                 to = self.place[:, None, others] - self.place[:, part, None]
                 far = np.linalg.norm(to, axis=0)
                 turn = self.out[:, part].T @ self.out[:, others]
-                if opposite:
-                    inwards = -np.einsum("ik,ikl->kl", self.out[:, part], to)
-                    seen = (turn < -ALONG) & (inwards > ALONG * far)
-                else:
-                    seen = turn > ALONG
+                inwards = -np.einsum("ik,ikl->kl", self.out[:, part], to)
+                seen = (turn < -ALONG) & (inwards > ALONG * far)
                 far[~seen] = np.inf
                 distance[part] = far.min(axis=1, initial=np.inf)
         return distance
@@ -119,7 +117,7 @@ class Layers:
         """What rims add to the energy of an error over that which one order more finds of it."""
         rims = _rims(self.mesh, self.held, self.with_axis)
         nu = np.array([material.nu for material in self.materials])[rims.material]
-        added = RIM * (2 * nu) ** 4 * (rims.width / rims.across(opposite=True)) ** 2
+        added = RIM * (2 * nu) ** 4 * (rims.width / rims.across) ** 2
         # cells along a rim differ, and all of it gives way
         means = [added[(rims.face == face) & (added > 0)] for face in np.unique(rims.face)]
         return max((float(mean.mean()) for mean in means if len(mean)), default=0.0)
