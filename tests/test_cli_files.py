@@ -44,7 +44,7 @@ def test_a_new_train_runs_and_its_shafts_do(kind, tmp_path):
     assert done.exit_code == 0 and len(list(tmp_path.iterdir())) == 3
     assert len(start(kind, "my box")) == 3
     train = sg.load_train(tmp_path / "my box.toml")
-    assert train.title == "my box" and not Assembly(train).cautions
+    assert train.title == "my box" and not Assembly(train).cautions()
     found = deflection(Assembly(train), train.operation[0], "timoshenko", "timoshenko")
     assert found.mesh_forces["mesh"] > 1000 and not found.notes
     again = command("new", tmp_path / "my box", "--kind", kind)

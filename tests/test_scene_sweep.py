@@ -128,7 +128,10 @@ def test_a_table_of_ones_own_says_every_variant_and_an_empty_cell_leaves_the_fil
         (["--vary", "segment.left.diamter=1 mm,2 mm"], "did you mean .segment.left.diameter"),
         (["--vary", "segment.lef.diameter=1 mm,2 mm"], "there is no segment.lef"),
         (["--vary", "bearing.A.kxq=1e8,2e8"], "did you mean .bearing.A.stiffness.kxx"),
-        (["--vary", "segment.left.diameter=1 mm:2 s:3"], "is not a known unit|1 mm:2 s:3"),
+        (
+            ["--vary", "segment.left.diameter=1 mm:2 s:3"],
+            "are units of different quantities|1 mm:2 s:3",
+        ),
         (
             ["--vary", "segment.left.diameter=50 mm", "--keep-sum", "segment.left.length"],
             "--keep-sum",

@@ -84,7 +84,10 @@ def test_a_shaft_is_shown_with_its_bars_or_the_reason_why_it_has_none(run, tmp_p
     assert "Under x 500.0 N, y 300.0 N, z 2000 N at pinion" in said
     assert said.count("error bar") == 4 and "% of the motion of pinion" in said
     bare = " ".join(run(*how)[1].split())
-    assert "No error bars: they come with the model harmonic" in bare and "mesh force" not in bare
+    assert (
+        "No error bars: they come with a solid, such as harmonic" in bare
+        and "mesh force" not in bare
+    )
     data = json.loads((tmp_path / "deflection.json").read_text())
     assert data["load"] == [500.0, 300.0, 2000.0, 0.0, 0.0, 0.0] and data["why_without_bar"] == ""
     model = data["models"]["harmonic"]

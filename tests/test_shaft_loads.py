@@ -354,7 +354,9 @@ def test_lives_in_all_cases_add_their_damage():
     assert result["A"] is result.facts[0]
     key = Keyway(name="key", segment="rod", position=0.17, length=0.03, width=0.008, depth=0.004)
     keyed = sg.bearing(catalogued(FULL, HALF).with_changes(features=(key,)))
-    assert [life.duty.hours for life in keyed.lives] == [life.duty.hours for life in result.lives]
+    # the shaft with its keyway is softer, which shifts little of the loads of two bearings
+    hours = [life.duty.hours for life in result.lives]
+    assert [life.duty.hours for life in keyed.lives] == pytest.approx(hours, rel=1e-3)
     chosen = sg.bearing(catalogued(FULL, HALF), "B", case="2")
     assert chosen.case == "half" and chosen.facts[0].load == pytest.approx(
         result.facts[1].load / 2, rel=0.02, abs=1.0

@@ -250,7 +250,7 @@ def test_points_of_a_deck_are_named_by_nodes_and_doubtful_units_are_told(tmp_pat
     assert train.housing.mass == pytest.approx(box.rigid_mass[0, 0], rel=1e-9)
     assert not any("unusual" in text for text in Assembly(train).cautions())
     path.write_text(text.replace('matrices = "box.npz"\n', points))
-    (said,) = (text for text in Assembly(sg.load_train(path)).cautions if "unusual" in text)
+    (said,) = (text for text in Assembly(sg.load_train(path)).cautions() if "unusual" in text)
     assert "as of millimetres, tonnes and newtons: units = 'mm-t-N'" in said
     path.write_text(text.replace('matrices = "box.npz"\n', f'{points}units = "mm"\n'))
     with pytest.raises(SceneError, match="housing.units = .mm.: use one of m-kg-N"):

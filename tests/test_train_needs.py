@@ -69,9 +69,9 @@ def test_frequencies_need_teeth_and_a_mesh_alone(pair):
     """No engine, load, transmission error, hand, face width or flank; with the flank they are the same."""
     bare, told = frequencies(pair()), frequencies(pair(pinion='loaded_side = "left"'))
     assert bare == pytest.approx(told, rel=1e-12) and len(bare) > 5
-    (text,) = Assembly(load_train(pair())).cautions
+    (text,) = Assembly(load_train(pair())).cautions()
     assert "the left flank of the pinion is taken" in text
-    assert Assembly(load_train(pair(gear='loaded_side = "right"'))).cautions == ()
+    assert Assembly(load_train(pair(gear='loaded_side = "right"'))).cautions() == ()
 
 
 def test_the_flank_of_the_gear_is_that_of_the_pinion(pair):

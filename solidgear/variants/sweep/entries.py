@@ -17,6 +17,7 @@ import csv
 import math
 import re
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from contextlib import suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, NamedTuple
@@ -387,6 +388,8 @@ def _range(spec: str, whole_key: bool, search: bool) -> dict[str, Any]:
             raise SceneError(f"{unit!r} is not a known unit")
         if bool(unit) != bool(first):
             raise SceneError("give both ends with a unit, or none")
+        if unit and not _dimensions(unit) & _dimensions(first):
+            raise SceneError(f"{first!r} and {unit!r} are units of different quantities")
         ends.append(float(number) if unit == first else value / of_first)
     if counted and not (parts[2].isdecimal() and 2 <= int(parts[2]) <= MOST):
         raise SceneError(f"a:b:n needs a whole number n of 2 or more values, not {parts[2]!r}")
@@ -458,12 +461,18 @@ def in_si(value: object) -> float | None:
         return None
     if not (match := amount(value)) or not match[2]:
         return None
+    known = sorted(_dimensions(match[2]), key=[*DIMENSIONS].index)
+    return quantity(value, known[0]) if known else None
+
+
+def _dimensions(unit: str) -> set[str]:
+    """Return the dimensions that a unit can be of."""
+    dimensions = set()
     for dimension in DIMENSIONS:
-        try:
-            return quantity(value, dimension)
-        except SceneError:
-            continue
-    return None
+        with suppress(SceneError):
+            quantity(f"1 {unit}", dimension)
+            dimensions.add(dimension)
+    return dimensions
 
 
 def amount(word: object) -> re.Match[str] | None:
