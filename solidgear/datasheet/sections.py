@@ -28,7 +28,7 @@ from solidgear.show.words import DASH
 #: SI unit of a stress
 STRESS = "Pa stressed"
 #: rows of a table, and sentences of a section, that one page holds
-MOST_ROWS, MOST_MOTIONS, MOST_SENTENCES, MOST_CORNERS = 10, 5, 6, 6
+MOST_ROWS, MOST_MOTIONS, MOST_SENTENCES, MOST_CORNERS = 8, 3, 6, 6
 #: hours from which on a life is as good as without end
 ENDLESS = 1e6
 

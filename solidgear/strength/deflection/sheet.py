@@ -507,7 +507,8 @@ def _loaded(bearing: BearingState) -> str | Cell:
 def line(shaft: ShaftDeflection) -> Table:
     """Return the deflection line of a shaft in SI, for other programs."""
     heads = [f"{dof} [{si.split()[0]}]" for dof, si in zip(DOF_NAMES, MOVED)]
-    return numbers({"y [m]": shaft.stations, **dict(zip(heads, shaft.line.T))}, axes=1)
+    # along the shaft, where y is the motion that way
+    return numbers({"place [m]": shaft.stations, **dict(zip(heads, shaft.line.T))}, axes=1)
 
 
 def turn_chart(turn: StageTurn, units: Units = ENGINEERING, width: float = WIDE) -> Chart:
