@@ -1,4 +1,4 @@
-"""A caution or refusal that one command gives, all give whose numbers rest on the same."""
+"""A caution that one command gives, all give whose numbers rest on the same; none ends in a traceback."""
 
 from __future__ import annotations
 
@@ -27,7 +27,7 @@ BEGINNING = 60
 
 
 def of_scene(scene: Path) -> Iterator[Relation]:
-    """Cautions on numbers by all commands that print some, and refusals by all."""
+    """Cautions on numbers by all commands that print some, and no traceback by any."""
     with tempfile.TemporaryDirectory() as folder:
         rows = Path(folder) / "rows.csv"
         printed = {

@@ -42,12 +42,6 @@ class Printed:
         """Whether there are numbers."""
         return self.code in (0, NOT_REACHED) and bool(self.data)
 
-    @property
-    def refusal(self) -> str:
-        """Last sentence of a command that ended without numbers."""
-        lines = [line for line in self.stderr.splitlines() if line.strip()]
-        return self.crash or (lines[-1] if lines else "")
-
 
 def run(*words: Any) -> Printed:
     """Run a command with `--json`."""

@@ -49,7 +49,6 @@ class Rims:
     out: np.ndarray  #: (3, k) unit normals of the held face, out of what it holds
     face: np.ndarray  #: (k,) number of the held face
     width: np.ndarray  #: (k,) of the cell there, from the free surface inwards, m
-    depth: np.ndarray  #: (k,) of the cell there, from the held face inwards, m
     material: np.ndarray  #: (k,) number of that which is held
 
     @property
@@ -214,14 +213,13 @@ def _rims(mesh: SolidMesh, held: Held, with_axis: bool) -> Rims:
         rows.append((edges[side, which], which, facet_of[edges[side, which]]))
     if not rows:
         none, no_numbers = np.zeros(0), np.zeros(0, int)
-        return Rims(np.zeros((3, 0)), np.zeros((3, 0)), no_numbers, none, none, no_numbers)
+        return Rims(np.zeros((3, 0)), np.zeros((3, 0)), no_numbers, none, no_numbers)
     edge, which, beside = (np.concatenate(column) for column in zip(*rows))
     return Rims(
         m.p[:, m.edges[:, edge]].mean(axis=1),
         held.out[:, which],
         held.face[which],
         _depth(m, free[beside], m.f2t[0, free[beside]], normals[:, beside]),
-        _depth(m, held.facets[which], held.cells[which], held.out[:, which]),
         kinds[which],
     )
 
