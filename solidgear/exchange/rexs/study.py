@@ -37,8 +37,8 @@ def import_rexs(
     Raises
     ------
     SolidgearError
-        A file that is no REXS, of which no train can be made, or whose train could not be loaded, a file that is there, or a folder
-        that cannot be written.
+        A file that is no REXS, of which no train can be made, or whose train could not be loaded, a
+        file that is there, or a folder that cannot be written.
 
     Examples
     --------
