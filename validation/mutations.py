@@ -124,7 +124,7 @@ MUTATIONS = (
     ),
     Mutation(
         "corners: a rigid seat holds the face beyond its end",
-        "solidgear/core/bounds/meeting.py",
+        "solidgear/core/meshing/meeting.py",
         "meeting",
         "(before and any((lo < y - tol and y <= hi + tol for lo, hi in seats)), "
         "after and any((lo - tol <= y and y + tol < hi for lo, hi in seats)))",

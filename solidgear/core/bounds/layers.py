@@ -18,6 +18,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +28,7 @@ from scipy.sparse.csgraph import connected_components
 from solidgear.core.bounds.safety import LOCKING, RIM
 from solidgear.core.errors import NoBounds
 from solidgear.core.meshing.quality import outward
+from solidgear.core.models.solid.edges import SharpEdges, sharp_edges
 from solidgear.core.scene.shaft import without_axis
 
 if TYPE_CHECKING:
@@ -79,6 +81,7 @@ class Layers:
     mesh: SolidMesh  #: whose cells name materials by their numbers here
     materials: tuple[Material, ...]
     names: tuple[str, ...]  #: of a part made of each, in words
+    rigid: tuple[np.ndarray, ...]  #: facets of every rigid seat
     held: Held
     with_axis: bool
 
@@ -90,8 +93,14 @@ class Layers:
         kinds = np.array([materials.index(material) for material in parts])
         mesh = replace(mesh, segment=kinds[mesh.segment])
         firsts = tuple(names[parts.index(material)] for material in materials)
-        held = _held(scene, body, mesh, materials)
-        return cls(mesh, materials, firsts, held, not without_axis(scene))
+        rigid = tuple(_rigid(scene, body, mesh))
+        held = _held(mesh, materials, rigid)
+        return cls(mesh, materials, firsts, rigid, held, not without_axis(scene))
+
+    @cached_property
+    def sharp(self) -> SharpEdges:
+        """Edges along which stress is singular."""
+        return sharp_edges(self.mesh, self.materials, np.concatenate([*self.rigid, []]).astype(int))
 
     def refuse_locked(self) -> None:
         """Refuse a mesh with one cell across a layer that is held on both sides and hardly changes its
@@ -143,11 +152,11 @@ class Held:
     face: np.ndarray  #: (k,) number of the face that they make with others
 
 
-def _held(scene: Scene, body: Body, mesh: SolidMesh, materials: Sequence[Material]) -> Held:
+def _held(mesh: SolidMesh, materials: Sequence[Material], rigid: Sequence[np.ndarray]) -> Held:
     """Return the facets of rigid seats, and of joints seen from the softer material."""
     m = mesh.mesh
     joints, softer = _joints(mesh, materials)
-    kinds = [joints, *_rigid(scene, body, mesh)]
+    kinds = [joints, *rigid]
     facets = np.concatenate(kinds).astype(int)
     cells = np.concatenate([softer, *(m.f2t[0, seat] for seat in kinds[1:])]).astype(int)
     kind = np.repeat(np.arange(len(kinds)), [len(part) for part in kinds])

@@ -14,12 +14,12 @@ from scipy.sparse.csgraph import connected_components
 
 from solidgear.core.body import Block, Body, Port
 from solidgear.core.bounds.lines import Lines, place_of
-from solidgear.core.bounds.meeting import SAME, least_side
 from solidgear.core.bounds.singular_places import Place, singular_places
 from solidgear.core.errors import NoBounds
-from solidgear.core.kernel.lobatto import at_nodes, products
 from solidgear.core.meshing.cells import ENDS
 from solidgear.core.meshing.corner_layers import cut_towards
+from solidgear.core.meshing.lobatto import at_nodes, products
+from solidgear.core.meshing.meeting import SAME, least_side
 from solidgear.core.meshing.meridian import CUT_RATIO, Meridian, on_side
 from solidgear.core.models.harmonic.blocks import Work
 from solidgear.core.models.harmonic.families import Family

@@ -4,16 +4,16 @@ planes of section ties. All that refines, judges or names such places reads it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import atan2, pi
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from solidgear.core.bounds.meeting import SAME, Meeting, meeting
-from solidgear.core.meshing.corners import SHOULDER, corner_exponent
+from solidgear.core.meshing.corners import SHOULDER
 from solidgear.core.meshing.grading import corner_length
+from solidgear.core.meshing.meeting import SAME, Meeting, meeting
 from solidgear.core.scene.coned import coned
 from solidgear.core.scene.shaft import attached_stations
 
@@ -108,9 +108,12 @@ def singular_places(
     for spot in (*_blends(scene, shape), *_corners(shape), *_joints(shape), *_loaded(shape, tied)):
         if any(np.hypot(spot.y - p.y, spot.r - p.r) <= tol for p in places):
             continue
-        meets = meeting(shape, spot.y, spot.r, rigid) if spot.angle is None else None
+        if spot.angle is None:
+            meets = meeting(shape.segments, spot.y, spot.r, rigid)
+        else:
+            meets = Meeting(((spot.angle, scene.segments[0].material),), (False, False))
         what = spot.what if meets is None else _named(spot, meets, rigid, tol)
-        exponent = corner_exponent(spot.angle or 0.0) if meets is None else meets.exponent
+        exponent = LOAD_EDGE if meets is None else meets.exponent
         is_round = spot.angle == pi
         places.append(Place(what, spot.y, spot.r, spot.reach, exponent, is_round))
     return tuple(places)
@@ -131,6 +134,16 @@ def sharpest_exponent(scene: Scene, rigid: Collection[str] | None = None) -> flo
         ties = ((s, "rigid" if s.name in rigid else "average") for s in scene.stations)
     notched = [SHOULDER for feature in scene.features if feature.notched]
     return min(LOAD_EDGE, *notched, *(place.exponent for place in singular_places(scene, ties)))
+
+
+def end_exponent(scene: Scene, station: Station, rigid: Sequence[Station]) -> float:
+    """Return the exponent of displacement at the sharper end of a seat, with those of some stations
+    rigid.
+    """
+    segments = coned(scene).segments
+    ends = [(y, _segment(scene, y, station.y).radius_at(y)[1]) for y in (station.lo, station.hi)]
+    meets = [meeting(segments, y, r, rigid) for y, r in ends]
+    return min((m.exponent for m in meets if m is not None), default=LOAD_EDGE)
 
 
 def undecided_ends(scene: Scene) -> Iterator[str]:

@@ -26,7 +26,7 @@ from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.assembly import Pattern, Tabulated, Tabulation, batches
 from solidgear.core.kernel.attachment import Attached, reduced, with_ports
 from solidgear.core.kernel.cell_shapes import Shapes
-from solidgear.core.kernel.lobatto import gauss, gauss_box
+from solidgear.core.meshing.lobatto import gauss, gauss_box
 from solidgear.core.models.harmonic.families import TORSION, Family, family_of
 from solidgear.core.models.harmonic.mesh import HarmonicMesh
 

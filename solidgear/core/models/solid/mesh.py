@@ -17,8 +17,8 @@ from solidgear.core.body.surface import PIECES as PIECES_OF_EDGE
 from solidgear.core.body.surface import Surface, Volume
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import reference, tabulate, unknowns
-from solidgear.core.kernel.lobatto import gauss_box
 from solidgear.core.meshing.geometry import moments_of_cells
+from solidgear.core.meshing.lobatto import gauss_box
 from solidgear.core.models.solid.drawing import Outline, face_grid, on_faces
 
 if TYPE_CHECKING:

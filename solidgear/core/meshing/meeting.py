@@ -7,15 +7,14 @@ from dataclasses import dataclass
 from math import atan2, cos, pi
 from typing import TYPE_CHECKING, NamedTuple
 
-from solidgear.core.bounds.wedge import Wedge, wedge_exponent
+from solidgear.core.meshing.wedge import SAME_ANGLE, Wedge, wedge_exponent
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
     from solidgear.core.scene.parts import Material, Segment
     from solidgear.core.scene.shaft import Station
 
-#: shares of the length of a shaft within which points are one, and angles, rad, that are
-SAME, SAME_ANGLE = 1e-9, 1e-9
+#: share of the length of a shaft within which points are one
+SAME = 1e-9
 #: least side of a cell, in distances within which points are one
 RESOLVED = 4.0
 
@@ -33,11 +32,6 @@ class Meeting:
     held: tuple[bool, bool]  #: whether the outer face of the first and of the last is held
 
     @property
-    def angle(self) -> float:
-        """Angle of the material, rad."""
-        return sum(angle for angle, _ in self.wedges)
-
-    @property
     def joined(self) -> bool:
         """Whether several materials meet."""
         return len(self.wedges) > 1
@@ -46,18 +40,18 @@ class Meeting:
     def exponent(self) -> float:
         """Exponent of displacement there, one at most: the less, the sharper."""
         faces = sum(self.held)
-        if not faces and not self.joined and self.angle <= pi + SAME_ANGLE:
-            return 1.0
         turned = self.held == (False, True)
         return wedge_exponent(self.wedges[::-1] if turned else self.wedges, faces)
 
 
-def meeting(scene: Scene, y: float, r: float, rigid: Iterable[Station]) -> Meeting | None:
-    """Return what meets at a point (m) of the surface of a scene, with the seats of some stations
-    rigid; None where no surface is.
+def meeting(
+    segments: Sequence[Segment], y: float, r: float, rigid: Iterable[Station] = ()
+) -> Meeting | None:
+    """Return what meets at a point (m) of the surface of segments end to end, with the seats of some
+    stations rigid; None where no surface is.
     """
-    tol = SAME * scene.length
-    sectors = [s for s in (_sector(segment, y, r, tol) for segment in scene.segments) if s]
+    tol = SAME * (segments[-1].y1 - segments[0].y0)
+    sectors = [s for s in (_sector(segment, y, r, tol) for segment in segments) if s]
     first = next((s for s in sectors if not any(_touch(other, s) for other in sectors)), None)
     if first is None:
         return None  # all around is material
@@ -71,7 +65,7 @@ def meeting(scene: Scene, y: float, r: float, rigid: Iterable[Station]) -> Meeti
         before and any(lo < y - tol and y <= hi + tol for lo, hi in seats),
         after and any(lo - tol <= y and y + tol < hi for lo, hi in seats),
     )
-    return Meeting(tuple(_merged(row)), held)
+    return Meeting(tuple(merged((end - start, material) for start, end, material in row)), held)
 
 
 class _Sector(NamedTuple):
@@ -112,11 +106,10 @@ def _touch(first: _Sector, second: _Sector) -> bool:
     return abs((second.start - first.end + pi) % (2 * pi) - pi) < SAME_ANGLE
 
 
-def _merged(row: Sequence[_Sector]) -> list[Wedge]:
-    """Return sectors side by side as wedges, of one elasticity as one."""
+def merged(row: Iterable[Wedge]) -> list[Wedge]:
+    """Return wedges side by side, those of one elasticity as one."""
     wedges: list[Wedge] = []
-    for start, end, material in row:
-        angle = end - start
+    for angle, material in row:
         if wedges and _elasticity(wedges[-1][1]) == _elasticity(material):
             angle += wedges.pop()[0]
         wedges.append((angle, material))
