@@ -13,7 +13,6 @@ import solidgear as sg
 from solidgear import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.core.body import as_supports
 from solidgear.core.bounds import solid as bounds_solid
-from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.bounds.solid import _converged, _Search, enriched_errors, solid_bounds
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import _between, bounded
@@ -23,6 +22,7 @@ from solidgear.core.kernel.assembly import reference
 from solidgear.core.models.solid.enriched import Further
 from solidgear.core.models.solid.mesh import basis_of
 from solidgear.core.quantity import Quantity
+from solidgear.core.safety import LOCAL
 from solidgear.core.solve.factor import factorise
 
 ELEMENTS = ("tet4", "tet10", "hex8", "hex20", "hex27")

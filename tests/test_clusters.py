@@ -10,10 +10,11 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.core.body import as_supports
-from solidgear.core.bounds.clusters import ROOM, lower_ends
+from solidgear.core.bounds.clusters import lower_ends
 from solidgear.core.judge import bounded
 from solidgear.core.judge.bounded import NOTHING_BEYOND, mode_bars
 from solidgear.core.judge.hidden import COMPLETE, complete_list
+from solidgear.core.safety import ROOM
 from solidgear.core.scene import Bearing, Port, Scene
 from tests.shafts import shaft
 

@@ -11,9 +11,9 @@ import solidgear as sg
 from solidgear import Scene, Segment
 from solidgear.core.bounds.layers import Layers
 from solidgear.core.bounds.narrow import mesh_of
-from solidgear.core.bounds.safety import LOCAL, RIM
 from solidgear.core.bounds.solid import share_of_error, solid_bounds
 from solidgear.core.errors import NoBounds
+from solidgear.core.safety import LOCAL, RIM
 from solidgear.core.scene import Material
 from solidgear.parts.own_mesh import solid_body
 

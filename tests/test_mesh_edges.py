@@ -7,12 +7,13 @@ import pytest
 from skfem import MeshHex, MeshTet
 
 import solidgear as sg
-from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.bounds.solid import share_of_error, solid_bounds
+from solidgear.core.errors import NoBounds
 from solidgear.core.judge.cell_places import CellPlaces
 from solidgear.core.meshing.wedge import wedge_exponent
 from solidgear.core.models.solid.edges import sharp_edges
 from solidgear.core.models.solid.mesh import _isoparametric
+from solidgear.core.safety import LOCAL
 from solidgear.core.scene import Material
 from validation.mesh_files import write_boxes
 
@@ -91,7 +92,7 @@ def test_a_joint_that_turns_inside_counts_and_a_flat_one_does_not(kind):
     assert all(0 in (x, y) or 0 in (z, 1 - z) for x, y, z in edges if (x, y) != (0.5, 0.5))
 
 
-def beside(folder, cells, bricks=True):
+def beside(folder, cells, bricks=True, soft=SOFT.E):
     """A steel block with a softer one beside it, 10 mm each, the foot of which is clamped up to the
     joint, loaded at the far face of the steel.
     """
@@ -104,14 +105,14 @@ def beside(folder, cells, bricks=True):
     write_boxes(folder / "two.msh", lines, patches, bricks=bricks, parts=parts)
     path = folder / "two.toml"
     path.write_text(
-        """
-material = { E = 2.07e11, nu = 0.3, density = 7850 }
+        f"""
+material = {{ E = 2.07e11, nu = 0.3, density = 7850 }}
 [body]
 mesh = "two.msh"
 unit = "mm"
 axis = "none"
 [body.materials]
-soft = { E = 2.07e10, nu = 0.3, density = 1400 }
+soft = {{ E = {soft}, nu = 0.3, density = 1400 }}
 [[bearing]]
 name = "wall"
 patch = "foot"
@@ -151,6 +152,12 @@ def test_bars_hold_where_a_clamp_ends_at_a_joint(tmp_path, bricks):
         assert share_of_error(scene, body) == pytest.approx(1 / (1 - (2 / 3) ** (4 * exponent)))
     (low, high), (finer, softer) = ranges
     assert (finer < high).all() and (low < softer).all()
+
+
+def test_there_is_no_bar_where_no_cell_is_small_enough(tmp_path):
+    """Rubber on steel: half of what the end of the clamp gives way lies within a billionth of the body."""
+    with pytest.raises(NoBounds, match="no mesh resolves the edge at x = 0, y = 0, z = "):
+        share_of_error(*beside(tmp_path, 1, soft=1e7))
 
 
 def test_places_of_a_mesh_have_the_exponent_of_what_meets_there(tmp_path):

@@ -7,8 +7,8 @@ import pytest
 import solidgear as sg
 from solidgear import Bearing, Port, Scene, Segment
 from solidgear.core.bounds.narrow import narrow_share, share_of, share_of_gap
-from solidgear.core.bounds.safety import LOCAL, SLOWER
 from solidgear.core.bounds.solid import solid_bounds
+from solidgear.core.safety import LOCAL, SLOWER
 
 #: exponents at the ends of seats on a smooth surface
 AVERAGED, RIGID = 1.0, 1 / 2

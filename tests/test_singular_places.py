@@ -15,12 +15,12 @@ import pytest
 import solidgear as sg
 from solidgear.core.bounds.harmonic import richer_space
 from solidgear.core.bounds.refining import Corners, Meshed
-from solidgear.core.bounds.richer_space import LAYERS
 from solidgear.core.bounds.singular_places import sharpest_exponent, singular_places
 from solidgear.core.bounds.solid import share_of_error
 from solidgear.core.meshing.meeting import least_side
 from solidgear.core.meshing.meridian import CUT_RATIO
 from solidgear.core.meshing.wedge import wedge_exponent
+from solidgear.core.safety import LAYERS
 from solidgear.core.scene import Chamfer, Fillet, Material, Port, Scene, Segment
 from tests.command import command
 from validation.campaign.cases.answers import ask, excluding, scene_of

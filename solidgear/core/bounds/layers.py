@@ -25,10 +25,10 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from solidgear.core.bounds.safety import LOCKING, RIM
 from solidgear.core.errors import NoBounds
 from solidgear.core.meshing.quality import outward
 from solidgear.core.models.solid.edges import SharpEdges, sharp_edges
+from solidgear.core.safety import ALONG, LOCKING, ONE_CELL, RIM
 from solidgear.core.scene.shaft import without_axis
 
 if TYPE_CHECKING:
@@ -37,8 +37,6 @@ if TYPE_CHECKING:
     from solidgear.core.scene import Scene
     from solidgear.core.scene.parts import Material
 
-#: cosine of the angle between faces that count as one, or as opposite: within 60 degrees
-ALONG = 0.5
 #: distances of a face that are none, in lengths of the mesh
 HAIR = 1e-9
 
@@ -113,7 +111,7 @@ class Layers:
             if material.nu <= LOCKING or not len(cells):
                 continue
             corners = np.isin(m.t[:, cells], m.facets[:, held.facets[mine]])
-            if 2 * corners.all(axis=0).sum() > len(cells):
+            if corners.all(axis=0).sum() > ONE_CELL * len(cells):
                 raise NoBounds(
                     f"{name}, of Poisson's ratio {material.nu:g}, is held on both sides and one cell "
                     "thick, and such a layer locks unseen: use smaller cells there",

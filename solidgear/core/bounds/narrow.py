@@ -23,9 +23,9 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.bounds.safety import GAP, REACH
-from solidgear.core.bounds.singular_places import LOAD_EDGE, end_exponent
+from solidgear.core.bounds.singular_places import end_exponent
 from solidgear.core.models.solid.mesh import SolidMesh
+from solidgear.core.safety import GAP, LOAD_EDGE, REACH
 from solidgear.core.scene.shaft import without_axis
 
 if TYPE_CHECKING:

@@ -14,8 +14,7 @@ from scipy.sparse.csgraph import connected_components
 
 from solidgear.core.body import Block, Body, Port
 from solidgear.core.bounds.lines import Lines, place_of
-from solidgear.core.bounds.singular_places import Place, singular_places
-from solidgear.core.errors import NoBounds
+from solidgear.core.bounds.singular_places import Place, refuse_unresolved, singular_places
 from solidgear.core.meshing.cells import ENDS
 from solidgear.core.meshing.corner_layers import cut_towards
 from solidgear.core.meshing.lobatto import at_nodes, products
@@ -23,16 +22,11 @@ from solidgear.core.meshing.meeting import SAME, least_side
 from solidgear.core.meshing.meridian import CUT_RATIO, Meridian, on_side
 from solidgear.core.models.harmonic.blocks import Work
 from solidgear.core.models.harmonic.families import Family
+from solidgear.core.safety import EXTRA, LAYERS, SHORT
 
 if TYPE_CHECKING:
     from solidgear.core.models.harmonic.mesh import HarmonicMesh
     from solidgear.core.scene import Scene
-
-
-#: orders above that of the mesh, and cuts towards singular corners (one where only a load jumps)
-EXTRA, LAYERS = 2, 2
-#: a side shorter than this share of another one of its cell joins the hats at its ends
-SHORT = 0.1
 
 
 class RicherSpace:
@@ -80,12 +74,7 @@ class RicherSpace:
         """
         least = least_side(self.scene.length)
         for place in self.corners.values():
-            if place.within(least) > 1 / 2:
-                raise NoBounds(
-                    f"no mesh resolves the {place.what} (y = {1e3 * place.y:.4g} mm), so much softer is "
-                    "the material under that seat: to the last micrometre the place decides numbers; "
-                    'let it end elsewhere, or use attachment = "average"'
-                )
+            refuse_unresolved(f"{place.what} (y = {1e3 * place.y:.4g} mm)", place.within(least))
         out = np.ones(self.flat.cells.shape[1])
         for vertex, place in self.corners.items():
             if place.sharp:

@@ -11,21 +11,20 @@ from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from solidgear.core.meshing.corners import SHOULDER
+from solidgear.core.errors import NoBounds
 from solidgear.core.meshing.grading import corner_length
 from solidgear.core.meshing.meeting import SAME, Meeting, meeting
+from solidgear.core.meshing.wedge import wedge_exponent
+from solidgear.core.safety import LOAD_EDGE, SMOOTH, UNRESOLVED
 from solidgear.core.scene.coned import coned
 from solidgear.core.scene.shaft import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene, Segment
+    from solidgear.core.scene.feature import Feature
     from solidgear.core.scene.outline import Edge
     from solidgear.core.scene.shaft import Station
 
-#: a surface that turns by less than this (rad) from one segment to the next counts as smooth
-SMOOTH = 0.02
-#: exponent at the end of an averaged seat, where the load on a smooth surface ends
-LOAD_EDGE = 1.0
 #: share of the reach of a place that no drawing is meant to, and of its energy that may lie within
 DETAIL, DECIDING = 0.01, 0.1
 
@@ -73,9 +72,9 @@ class Place:
 
     def within(self, distance: float) -> float:
         """Return the share of the energy that stress at the place stores which lies no farther from it,
-        m: it goes with the power 2 a.
+        m.
         """
-        return min(distance / self.reach, 1.0) ** (2 * self.exponent)
+        return share_within(distance / self.reach, self.exponent)
 
     def distance(self, points: np.ndarray) -> np.ndarray:
         """Return the distance (n,) of points (3, n) from it, m."""
@@ -119,6 +118,31 @@ def singular_places(
     return tuple(places)
 
 
+def feature_exponent(features: Iterable[Feature], scene: Scene) -> float:
+    """Return the exponent of displacement at some features of a scene: those with notches are cut at
+    right angles.
+    """
+    notched = any(feature.notched for feature in features)
+    return wedge_exponent([((1.5 if notched else 1.0) * pi, scene.segments[0].material)])
+
+
+def share_within(distance: float, exponent: float) -> float:
+    """Return the share of the energy that stress at a place stores which lies no farther from it, in
+    reaches of the place: it goes with the power 2 a.
+    """
+    return min(distance, 1.0) ** (2 * exponent)
+
+
+def refuse_unresolved(what: str, share: float) -> None:
+    """Refuse bars where so large a share of the energy at a place lies nearer than any cell."""
+    if share > UNRESOLVED:
+        raise NoBounds(
+            f"no mesh resolves the {what}, so much softer is the material under what is held there: to "
+            "the last micrometre the place decides numbers; let it end elsewhere, or use "
+            'attachment = "average"'
+        )
+
+
 def sharpest_exponent(scene: Scene, rigid: Collection[str] | None = None) -> float:
     """Return the exponent of displacement at the sharpest edge: of shoulders, features, joints of
     materials and ends of seats; `rigid` are names of stations, unless those that the scene says.
@@ -132,8 +156,11 @@ def sharpest_exponent(scene: Scene, rigid: Collection[str] | None = None) -> flo
     ties = attached_stations(scene.stations)
     if rigid is not None:
         ties = ((s, "rigid" if s.name in rigid else "average") for s in scene.stations)
-    notched = [SHOULDER for feature in scene.features if feature.notched]
-    return min(LOAD_EDGE, *notched, *(place.exponent for place in singular_places(scene, ties)))
+    return min(
+        LOAD_EDGE,
+        feature_exponent(scene.features, scene),
+        *(place.exponent for place in singular_places(scene, ties)),
+    )
 
 
 def end_exponent(scene: Scene, station: Station, rigid: Sequence[Station]) -> float:

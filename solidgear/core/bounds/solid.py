@@ -27,7 +27,7 @@ import numpy as np
 
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
-from solidgear.core.bounds.clusters import ROOM, lower_ends
+from solidgear.core.bounds.clusters import lower_ends
 from solidgear.core.bounds.enriched_block import EnrichedBlock, enriched_block, independent
 from solidgear.core.bounds.harmonic import (
     eigenvalue,
@@ -38,15 +38,20 @@ from solidgear.core.bounds.harmonic import (
 )
 from solidgear.core.bounds.layers import Layers
 from solidgear.core.bounds.narrow import mesh_of, narrow_share
-from solidgear.core.bounds.safety import LEAST, MISSING, SLOWER
-from solidgear.core.bounds.singular_places import LOAD_EDGE, sharpest_exponent
+from solidgear.core.bounds.singular_places import (
+    refuse_unresolved,
+    share_within,
+    sharpest_exponent,
+)
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import NoBounds
 from solidgear.core.kernel.room import MB
 from solidgear.core.machine.memory import NoRoom, require
 from solidgear.core.machine.processes import give_back
+from solidgear.core.meshing.meeting import least_side
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.models.solid.seat_faces import Seats
+from solidgear.core.safety import LEAST, LOAD_EDGE, MISSING, MOST_STEPS, ROOM, SLOWER
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.inertia_relief import ratio
 from solidgear.core.solve.modes import Mode, ModeSet
@@ -60,8 +65,6 @@ if TYPE_CHECKING:
 FIELDS = 1e-14
 #: exponent of a body without an axis and without any edge or load at which stress is singular or jumps
 CONVEX = 1.5
-#: steps after which they have failed
-MOST_STEPS = 200
 #: share of an energy below which gains are rounding, and fall no more
 ROUNDING = 1e-12
 #: vectors of every column that are held while they go on
@@ -209,8 +212,12 @@ def share_of_error(scene: Scene, body: Body) -> float:
 
 def _sharpest(scene: Scene, body: Body, layers: Layers | None) -> float:
     """Return the exponent of displacement at the sharpest edge of a body, with or without an axis."""
-    # edges of a part from a file stand in its mesh, as those of its round part do in the outline
-    edges = LOAD_EDGE if layers is None or scene.body is None else layers.sharp.sharpest
+    edges = LOAD_EDGE
+    if layers is not None and scene.body is not None:
+        # edges of a part from a file stand in its mesh, as those of its round part do in the outline
+        edges = layers.sharp.sharpest
+        share = share_within(least_side(scene.length) / scene.length, edges)
+        refuse_unresolved(layers.sharp.at_sharpest(layers.mesh), share)
     if not without_axis(scene):
         rigid = [port.name for port in body.ports if port.attachment == "rigid"]
         return min(sharpest_exponent(scene, rigid), edges)

@@ -10,10 +10,10 @@ import numpy as np
 
 from solidgear.core.body import Body
 from solidgear.core.bounds.layers import Layers, carrying
-from solidgear.core.bounds.singular_places import LOAD_EDGE, Place, Singular, singular_places
+from solidgear.core.bounds.singular_places import Place, Singular, feature_exponent, singular_places
 from solidgear.core.kernel.assembly import reference
-from solidgear.core.meshing.corners import SHOULDER
 from solidgear.core.meshing.grading import corner_length
+from solidgear.core.safety import LOAD_EDGE
 from solidgear.core.scene.feature import SMALLEST
 from solidgear.core.scene.shaft import attached_stations, without_axis
 
@@ -106,7 +106,7 @@ def _features(scene: Scene, mesh: SolidMesh) -> Iterator[Spots]:
             " or ".join(f"{f.what} {f.name}" for f in members),
             points,
             min(corner_length(segment), *lengths),
-            SHOULDER if any(f.notched for f in members) else 1.0,
+            feature_exponent(members, scene),
         )
 
 

@@ -8,6 +8,7 @@ from math import atan2, cos, pi
 from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.core.meshing.wedge import SAME_ANGLE, Wedge, wedge_exponent
+from solidgear.core.safety import RESOLVED
 
 if TYPE_CHECKING:
     from solidgear.core.scene.parts import Material, Segment
@@ -15,8 +16,6 @@ if TYPE_CHECKING:
 
 #: share of the length of a shaft within which points are one
 SAME = 1e-9
-#: least side of a cell, in distances within which points are one
-RESOLVED = 4.0
 
 
 def least_side(length: float) -> float:

@@ -17,14 +17,11 @@ import numpy as np
 
 from solidgear.core.meshing.meeting import Meeting, merged
 from solidgear.core.meshing.wedge import wedge_exponent
+from solidgear.core.safety import ROUGH, TURNED
 
 if TYPE_CHECKING:
     from solidgear.core.models.solid.mesh import SolidMesh
     from solidgear.core.scene.parts import Material
-
-#: rad, to which sides of cells stand for a surface; one that turns by less than so many of these across
-#: an edge is round: ten flat sides of a bore are, a chamfer of 45 degrees has edges
-ROUGH, TURNED = pi / 12, 3
 
 
 @dataclass(frozen=True)
@@ -39,6 +36,14 @@ class SharpEdges:
     def sharpest(self) -> float:
         """The least exponent, one without any edge."""
         return float(self.exponents.min(initial=1.0))
+
+    def at_sharpest(self, mesh: SolidMesh) -> str:
+        """Return where the sharpest edge is, in words."""
+        if not len(self.numbers):
+            return ""
+        ends = mesh.mesh.edges[:, self.numbers[self.exponents.argmin()]]
+        x, y, z = 1e3 * mesh.mesh.p[:, ends].mean(axis=1) + 0.0
+        return f"edge at x = {x:.4g}, y = {y:.4g}, z = {z:.4g} mm"
 
     def exponents_on(self, edges: np.ndarray) -> np.ndarray:
         """Return the exponents at edges of the mesh (n,), one where stress is not singular."""
