@@ -18,12 +18,13 @@ from typing import Final
 #: exponent of displacement where only a load jumps, on a smooth surface: rotations go with the
 #: logarithm of the distance; what is larger is as smooth
 LOAD_EDGE: Final = 1.0
+#: the same of a body without any edge or load at which stress is singular or jumps. 2026-11-29: 90 modes
+#: of free blocks on 15 meshes, bars without any safety 1.09 to 5 of the error
+CONVEX: Final = 1.5
 #: rad, to which flat sides of cells stand for a surface, and by how many of these it turns where there
 #: is an edge: ten sides of a bore are round (36 degrees each), a chamfer of 45 degrees has edges
 ROUGH: Final = pi / 12
 TURNED: Final = 3
-#: rad, by which the outline of a shaft turns at least where it has a corner: an exponent of 0.98
-SMOOTH: Final = 0.02
 #: least side of a cell, in distances within which two points are one (1e-9 of the shaft): what is
 #: nearer to a corner no mesh sees
 RESOLVED: Final = 4.0

@@ -14,8 +14,8 @@ import numpy as np
 from solidgear.core.errors import NoBounds
 from solidgear.core.meshing.grading import corner_length
 from solidgear.core.meshing.meeting import SAME, Meeting, meeting
-from solidgear.core.meshing.wedge import wedge_exponent
-from solidgear.core.safety import LOAD_EDGE, SMOOTH, UNRESOLVED
+from solidgear.core.meshing.wedge import SAME_ANGLE, wedge_exponent
+from solidgear.core.safety import LOAD_EDGE, UNRESOLVED
 from solidgear.core.scene.coned import coned
 from solidgear.core.scene.shaft import attached_stations
 
@@ -242,7 +242,7 @@ def _corner(edge: Edge) -> str:
         return ""
     if edge.steps:
         return "shoulder" if outer else "step of the bore"
-    if edge.r > 0 and edge.bend > SMOOTH:
+    if edge.r > 0 and edge.bend > SAME_ANGLE:
         return f"concave kink of the {'surface' if outer else 'bore'}"
     return ""
 

@@ -51,7 +51,7 @@ from solidgear.core.machine.processes import give_back
 from solidgear.core.meshing.meeting import least_side
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.models.solid.seat_faces import Seats
-from solidgear.core.safety import LEAST, LOAD_EDGE, MISSING, MOST_STEPS, ROOM, SLOWER
+from solidgear.core.safety import CONVEX, LEAST, LOAD_EDGE, MISSING, MOST_STEPS, ROOM, SLOWER
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.inertia_relief import ratio
 from solidgear.core.solve.modes import Mode, ModeSet
@@ -63,8 +63,6 @@ if TYPE_CHECKING:
 
 #: relative error of the energy of displacements, far below that of the error sought
 FIELDS = 1e-14
-#: exponent of a body without an axis and without any edge or load at which stress is singular or jumps
-CONVEX = 1.5
 #: share of an energy below which gains are rounding, and fall no more
 ROUNDING = 1e-12
 #: vectors of every column that are held while they go on
