@@ -366,6 +366,22 @@ MUTATIONS = (
         "tests/test_layers.py::test_bars_hold_on_even_meshes_of_others",
     ),
     Mutation(
+        "bounds of 3D solids: all cells around an edge are of one material",
+        "solidgear/core/models/solid/edges.py",
+        "_Around.wedges",
+        "self.materials[self.mesh.segment[cell]]",
+        "self.materials[0]",
+        "tests/test_mesh_edges.py::test_bars_hold_where_a_clamp_ends_at_a_joint",
+    ),
+    Mutation(
+        "bounds of 3D solids: an edge does not know which face beside it is held",
+        "solidgear/core/models/solid/edges.py",
+        "sharp_edges",
+        "is_held[held] = True",
+        "is_held[held] = False",
+        "tests/test_mesh_edges.py::test_what_is_held_ends_in_a_face_or_at_an_edge",
+    ),
+    Mutation(
         "bounds of 3D solids: bearings do not push a mode",
         "solidgear/core/bounds/solid.py",
         "errors_of_modes",
