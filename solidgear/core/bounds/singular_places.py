@@ -21,7 +21,7 @@ from solidgear.core.scene.shaft import attached_stations
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene, Segment
-    from solidgear.core.scene.feature import Feature
+    from solidgear.core.scene.feature import OnSegment
     from solidgear.core.scene.outline import Edge
     from solidgear.core.scene.shaft import Station
 
@@ -118,7 +118,7 @@ def singular_places(
     return tuple(places)
 
 
-def feature_exponent(features: Iterable[Feature], scene: Scene) -> float:
+def feature_exponent(features: Iterable[OnSegment], scene: Scene) -> float:
     """Return the exponent of displacement at some features of a scene: those with notches are cut at
     right angles.
     """
