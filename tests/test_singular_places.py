@@ -57,6 +57,19 @@ def test_a_soft_wedge_between_a_rigid_face_and_a_hard_one(soft):
     assert found == pytest.approx(expected, rel=1e-6)
 
 
+@pytest.mark.parametrize("face", ["start", "end"])
+def test_the_rims_of_a_held_face_are_held_on_one_side(face):
+    tube = Segment.cylinder("tube", length=0.1, diameter=0.06, bore=0.03, material=STEEL)
+    wall = sg.Bearing(name="wall", face=face, seat_width=0.01, hold="clamped")
+    scene = Scene.from_parts([tube], STEEL, [wall], Port(y=0.05, lo=0.04, hi=0.06))
+    rims = [place for place in singular_places(scene) if "held face of wall" in place.what]
+    assert [place.r for place in rims] == [0.03, 0.015]
+    expected = wedge_exponent([(QUARTER, STEEL)], held=1)  # 0.71, of Williams' equation
+    assert [place.exponent for place in rims] == pytest.approx([expected] * 2)
+    mean = scene.with_attachment("average")  # free of shear and of stress along the rim
+    assert sharpest_exponent(mean) == 1.0
+
+
 @pytest.mark.parametrize("degrees", [200, 270, 340])
 def test_a_wedge_held_on_both_faces(degrees):
     """Clamped and clamped, Williams (1952): kappa sin(a w) = a sin(w), of either sign."""

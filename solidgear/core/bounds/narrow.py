@@ -25,7 +25,7 @@ import numpy as np
 
 from solidgear.core.bounds.safety import GAP, REACH
 from solidgear.core.models.solid.mesh import SolidMesh
-from solidgear.core.scene.shaft import without_axis
+from solidgear.core.scene.shaft import on_face, without_axis
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
@@ -96,7 +96,7 @@ def _seats(scene: Scene, body: Body, mesh: SolidMesh) -> list[Seat]:
     seats: list[Seat] = []
     for port in body.ports:
         station = stations.get(port.name)
-        if station is None or port.attachment not in EXPONENTS:
+        if station is None or on_face(station) or port.attachment not in EXPONENTS:
             continue
         facets = mesh.seat(station, scene.segments, 1e-7 * scene.length)
         if len(facets):

@@ -15,7 +15,7 @@ from solidgear.core.bounds.meeting import SAME, Meeting, meeting
 from solidgear.core.meshing.corners import SHOULDER, corner_exponent
 from solidgear.core.meshing.grading import corner_length
 from solidgear.core.scene.coned import coned
-from solidgear.core.scene.shaft import attached_stations
+from solidgear.core.scene.shaft import attached_stations, on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene, Segment
@@ -223,12 +223,13 @@ def _joints(scene: Scene) -> Iterator[_Spot]:
 def _loaded(scene: Scene, ties: Iterable[tuple[Station, str]]) -> Iterator[_Spot]:
     """Yield the ends of seats, also where the surface ends: the shear that the seat carries meets a
     face that is free of it, and rotations go with the logarithm of the distance; and the ends of
-    planes that carry a load.
+    planes and faces that carry a load.
     """
     for station, tie in ties:
-        if tie == "section":
+        if tie == "section" or on_face(station):
             segment = _segment(scene, station.y)
-            kind, reach = f"section plane of {station.name}", corner_length(segment)
+            plane = "section plane" if tie == "section" else "rim of the held face"
+            kind, reach = f"{plane} of {station.name}", corner_length(segment)
             bore, surface = segment.radius_at(station.y)
             yield _Spot(kind, station.y, surface, reach)
             if bore > 0:
