@@ -23,6 +23,7 @@ from solidgear.core.bounds.wedge import wedge_exponent
 from solidgear.core.meshing.meridian import CUT_RATIO
 from solidgear.core.scene import Chamfer, Fillet, Material, Port, Scene, Segment
 from tests.command import command
+from tests.test_holds import on_face
 from validation.campaign.cases.answers import ask, excluding, scene_of
 
 SHAFTS = Path(__file__).parent / "found" / "shafts"
@@ -68,6 +69,21 @@ def test_the_rims_of_a_held_face_are_held_on_one_side(face):
     assert [place.exponent for place in rims] == pytest.approx([expected] * 2)
     mean = scene.with_attachment("average")  # free of shear and of stress along the rim
     assert sharpest_exponent(mean) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("blend", "angle"),
+    [(Fillet(name="c", y=0, radius=5e-3), 180), (Chamfer(name="c", y=0, length=5e-3), 135)],
+)
+def test_the_rim_of_a_held_face_lies_where_a_blend_begins(blend, angle):
+    """Coarser meshes, and cells cut towards the wrong ring, left out more than their bars."""
+    scene = on_face().with_changes(blends=(blend,))
+    (rim,) = (place for place in singular_places(scene) if "held face" in place.what)
+    assert rim.r == pytest.approx(0.045)
+    expected = wedge_exponent([(math.radians(angle), scene.segments[0].material)], held=1)
+    assert rim.exponent == pytest.approx(expected, abs=1e-9)
+    answers = {tol: ask(scene, tol) for tol in (1e-2, 1e-3)}
+    assert not excluding(scene.name, answers)
 
 
 @pytest.mark.parametrize("degrees", [200, 270, 340])
