@@ -380,6 +380,14 @@ MUTATIONS = (
         "tests/test_layers.py::test_bars_hold_on_even_meshes_of_others",
     ),
     Mutation(
+        "bounds of 3D solids: few cells from face to face lock as little as the rest",
+        "solidgear/core/bounds/layers.py",
+        "Layers.refuse_locked",
+        "share * _bulk(material.nu) > _bulk(LOCKING)",
+        "share > 0.5",
+        "tests/test_layers.py::test_a_few_cells_from_face_to_face_lock_a_layer_that_keeps_its_volume",
+    ),
+    Mutation(
         "bounds of 3D solids: bearings do not push a mode",
         "solidgear/core/bounds/solid.py",
         "errors_of_modes",
