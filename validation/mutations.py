@@ -62,7 +62,7 @@ MUTATIONS = (
         "only the mean of a held seat is held",
         "solidgear/core/scene/stations.py",
         "usual_attachment",
-        'return "average" if bearing.get("hold") is None else "rigid"',
+        'return "rigid"',
         'return "average"',
         "tests/test_holds.py::test_the_clamped_foot_of_a_block_does_not_deform",
     ),
@@ -126,11 +126,25 @@ MUTATIONS = (
         "corners: a rigid seat holds the face beyond its end",
         "solidgear/core/meshing/meeting.py",
         "meeting",
-        "(before and any((lo < y - tol and y <= hi + tol for lo, hi in seats)), "
-        "after and any((lo - tol <= y and y + tol < hi for lo, hi in seats)))",
-        "(after and any((lo - tol <= y and y + tol < hi for lo, hi in seats)), "
-        "before and any((lo < y - tol and y <= hi + tol for lo, hi in seats)))",
+        "Meeting(tuple(merged(row)), held)",
+        "Meeting(tuple(merged(row)), held[::-1])",
         "tests/test_singular_places.py::test_the_exponent_at_an_end_is_of_what_meets_there",
+    ),
+    Mutation(
+        "corners: the rim of a held face is free on both sides",
+        "solidgear/core/meshing/meeting.py",
+        "_holds",
+        "on_face(seat) and abs(seat.y - y) <= tol",
+        "False",
+        "tests/test_singular_places.py::test_the_rims_of_a_held_face_are_held_on_one_side",
+    ),
+    Mutation(
+        "a held face is held at its rim beside it",
+        "solidgear/core/models/harmonic/blocks.py",
+        "Work.side",
+        "attachment != 'section' and (not on_face(station))",
+        "attachment != 'section'",
+        "tests/test_holds.py::test_bars_of_a_clamped_face_hold_finite_elements_of_another_code",
     ),
     Mutation(
         "bounds: hats of a rigid seat are not one",
@@ -380,6 +394,14 @@ MUTATIONS = (
         "is_held[held] = True",
         "is_held[held] = False",
         "tests/test_mesh_edges.py::test_what_is_held_ends_in_a_face_or_at_an_edge",
+    ),
+    Mutation(
+        "bounds of 3D solids: few cells from face to face lock as little as the rest",
+        "solidgear/core/bounds/layers.py",
+        "Layers.refuse_locked",
+        "share * _bulk(material.nu) > _bulk(LOCKING)",
+        "share > 0.5",
+        "tests/test_layers.py::test_a_few_cells_from_face_to_face_lock_a_layer_that_keeps_its_volume",
     ),
     Mutation(
         "bounds of 3D solids: bearings do not push a mode",

@@ -26,7 +26,7 @@ import numpy as np
 from solidgear.core.bounds.singular_places import end_exponent
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.safety import GAP, LOAD_EDGE, REACH
-from solidgear.core.scene.shaft import without_axis
+from solidgear.core.scene.shaft import on_face, without_axis
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
@@ -95,7 +95,9 @@ def _seats(scene: Scene, body: Body, mesh: SolidMesh) -> list[Seat]:
     seats: list[Seat] = []
     for port in body.ports:
         station = stations.get(port.name)
-        if station is None or port.attachment not in ("average", "rigid"):
+        if station is None or on_face(station):
+            continue
+        if port.attachment not in ("average", "rigid"):
             continue
         facets = mesh.seat(station, scene.segments, 1e-7 * scene.length)
         if len(facets):

@@ -17,12 +17,15 @@ from solidgear.core.meshing.meeting import SAME, Meeting, meeting
 from solidgear.core.meshing.wedge import SAME_ANGLE, wedge_exponent
 from solidgear.core.safety import LOAD_EDGE, UNRESOLVED
 from solidgear.core.scene.coned import coned
-from solidgear.core.scene.shaft import attached_stations
+from solidgear.core.scene.corner import SURFACES
+from solidgear.core.scene.limits import TOUCH
+from solidgear.core.scene.shaft import attached_stations, on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene, Segment
     from solidgear.core.scene.feature import OnSegment
     from solidgear.core.scene.outline import Edge
+    from solidgear.core.scene.parts import Material
     from solidgear.core.scene.shaft import Station
 
 #: share of the reach of a place that no drawing is meant to, and of its energy that may lie within
@@ -107,13 +110,10 @@ def singular_places(
     for spot in (*_blends(scene, shape), *_corners(shape), *_joints(shape), *_loaded(shape, tied)):
         if any(np.hypot(spot.y - p.y, spot.r - p.r) <= tol for p in places):
             continue
-        if spot.angle is None:
-            meets = meeting(shape.segments, spot.y, spot.r, rigid)
-        else:
-            meets = Meeting(((spot.angle, scene.segments[0].material),), (False, False))
+        meets = spot.meets or meeting(shape.segments, spot.y, spot.r, rigid)
         what = spot.what if meets is None else _named(spot, meets, rigid, tol)
         exponent = LOAD_EDGE if meets is None else meets.exponent
-        is_round = spot.angle == pi
+        is_round = spot.meets is not None and spot.meets.angle == pi and not any(spot.meets.held)
         places.append(Place(what, spot.y, spot.r, spot.reach, exponent, is_round))
     return tuple(places)
 
@@ -196,8 +196,8 @@ class _Spot(NamedTuple):
     y: float
     r: float
     reach: float
-    #: of the material of a blend, rad, at one that segments have not; None where segments meet
-    angle: float | None = None
+    #: at a blend that segments have not; None where segments meet
+    meets: Meeting | None = None
 
 
 def _named(spot: _Spot, meets: Meeting, rigid: Iterable[Station], tol: float) -> str:
@@ -216,12 +216,18 @@ def _blends(scene: Scene, shape: Scene) -> Iterator[_Spot]:
         if not corner.root:
             continue
         what, reach = f"{corner.kind} {corner.name}", corner.axial + corner.radial
+        material = shape.segments[corner.owner].material
         if corner.centre is not None:
-            yield _Spot(what, *corner.middle[::-1], reach, angle=pi)
+            yield _Spot(what, *corner.middle[::-1], reach, _wedge(pi, material))
             continue
         slope, is_cone = atan2(corner.radial, corner.axial), shape is not scene
         for (r, y), turn in ((corner.on_face, pi / 2 - slope), (corner.on_cylinder, slope)):
-            yield _Spot(what, y, r, reach, angle=None if is_cone else pi + turn)
+            yield _Spot(what, y, r, reach, None if is_cone else _wedge(pi + turn, material))
+
+
+def _wedge(angle: float, material: Material, held: bool = False) -> Meeting:
+    """Return one material of an angle, rad, with one face held or none."""
+    return Meeting(((angle, material),), (held, False))
 
 
 def _corners(scene: Scene) -> Iterator[_Spot]:
@@ -263,21 +269,33 @@ def _joints(scene: Scene) -> Iterator[_Spot]:
 def _loaded(scene: Scene, ties: Iterable[tuple[Station, str]]) -> Iterator[_Spot]:
     """Yield the ends of seats, also where the surface ends: the shear that the seat carries meets a
     face that is free of it, and rotations go with the logarithm of the distance; and the ends of
-    planes that carry a load.
+    planes and faces that carry a load.
     """
     for station, tie in ties:
-        if tie == "section":
-            segment = _segment(scene, station.y)
-            kind, reach = f"section plane of {station.name}", corner_length(segment)
-            bore, surface = segment.radius_at(station.y)
-            yield _Spot(kind, station.y, surface, reach)
-            if bore > 0:
-                yield _Spot(f"{kind} in the bore", station.y, bore, reach)
+        if tie == "section" or on_face(station):
+            plane = "section plane" if tie == "section" else "rim of the held face"
+            yield from _rings(scene, station.y, f"{plane} of {station.name}", tie == "rigid")
             continue
         for y in (station.lo, station.hi):
             segment = _segment(scene, y, inside=station.y)
             reach = min(corner_length(segment), station.hi - station.lo)
             yield _Spot(f"seat end of {station.name}", y, segment.radius_at(y)[1], reach)
+
+
+def _rings(scene: Scene, y: float, kind: str, held: bool) -> Iterator[_Spot]:
+    """Yield the rings at which a plane ends, or an end face, held or not: at a rim that is rounded off or
+    cut, where the blend begins.
+    """
+    segment = _segment(scene, y)
+    reach = corner_length(segment)
+    rims = {c.surface: c for c in scene.outline.corners if not c.root and abs(c.y - y) < TOUCH}
+    for surface, r in zip(SURFACES, segment.radius_at(y)[::-1]):
+        what = kind if surface == "outer" else f"{kind} in the bore"
+        if rim := rims.get(surface):
+            turn = 0.0 if rim.centre else atan2(rim.axial, rim.radial)
+            yield _Spot(what, y, rim.on_face[0], reach, _wedge(pi - turn, segment.material, held))
+        elif r > 0:
+            yield _Spot(what, y, r, reach)
 
 
 def _segment(scene: Scene, y: float, inside: float | None = None) -> Segment:

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from solidgear.core.meshing.wedge import SAME_ANGLE, Wedge, wedge_exponent
 from solidgear.core.safety import RESOLVED
+from solidgear.core.scene.shaft import on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene.parts import Material, Segment
@@ -46,8 +47,8 @@ class Meeting:
 def meeting(
     segments: Sequence[Segment], y: float, r: float, rigid: Iterable[Station] = ()
 ) -> Meeting | None:
-    """Return what meets at a point (m) of the surface of segments end to end, with the seats of some
-    stations rigid; None where no surface is.
+    """Return what meets at a point (m) of the surface of segments end to end, with the seats and end
+    faces of some stations rigid; None where no surface is.
     """
     tol = SAME * (segments[-1].y1 - segments[0].y0)
     sectors = [s for s in (_sector(segment, y, r, tol) for segment in segments) if s]
@@ -57,14 +58,24 @@ def meeting(
     row = [first]
     while following := next((s for s in sectors if _touch(row[-1], s)), None):
         row.append(following)
-    seats = [(s.lo, s.hi) for s in rigid]
-    # the surface outside goes on towards smaller y before the first wedge, and beyond the last one
-    before, after = cos(row[0].start) < -SAME_ANGLE, cos(row[-1].end) > SAME_ANGLE
+    # of the surface that goes on before the first wedge and beyond the last one: along the outer
+    # surface, across the axis, or along a bore
+    before, after = -cos(row[0].start), cos(row[-1].end)
+    seats = list(rigid)
     held = (
-        before and any(lo < y - tol and y <= hi + tol for lo, hi in seats),
-        after and any(lo - tol <= y and y + tol < hi for lo, hi in seats),
+        any(_holds(seat, y, y - seat.lo, before, tol) for seat in seats),
+        any(_holds(seat, y, seat.hi - y, after, tol) for seat in seats),
     )
     return Meeting(tuple(merged((end - start, material) for start, end, material in row)), held)
+
+
+def _holds(seat: Station, y: float, reach: float, along: float, tol: float) -> bool:
+    """Return whether a seat or an end face holds the surface that goes on from a point at y with a
+    direction along the axis, by how far it reaches that way, m.
+    """
+    if abs(along) <= SAME_ANGLE:
+        return on_face(seat) and abs(seat.y - y) <= tol
+    return along > 0 and reach > tol and seat.lo - tol <= y <= seat.hi + tol
 
 
 class _Sector(NamedTuple):
