@@ -176,7 +176,7 @@ def test_a_few_cells_from_face_to_face_lock_a_layer_that_keeps_its_volume(nu, wh
     0.5 mm, of which none does, 1.6 and 1.8.
     """
     mesh, held = strip(whole)
-    layers = Layers(mesh, (Material(E=6e6, nu=nu, density=1100),), ("the layer",), held, False)
+    layers = Layers(mesh, (Material(E=6e6, nu=nu, density=1100),), ("the layer",), (), held, False)
     if not locks:
         layers.refuse_locked()
         return

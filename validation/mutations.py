@@ -126,8 +126,8 @@ MUTATIONS = (
         "corners: a rigid seat holds the face beyond its end",
         "solidgear/core/meshing/meeting.py",
         "meeting",
-        "Meeting(tuple(merged(row)), held)",
-        "Meeting(tuple(merged(row)), held[::-1])",
+        "Meeting(tuple(merged((end - start, material) for start, end, material in row)), held)",
+        "Meeting(tuple(merged((end - start, material) for start, end, material in row)), held[::-1])",
         "tests/test_singular_places.py::test_the_exponent_at_an_end_is_of_what_meets_there",
     ),
     Mutation(

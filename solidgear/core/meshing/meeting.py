@@ -32,6 +32,11 @@ class Meeting:
     held: tuple[bool, bool]  #: whether the outer face of the first and of the last is held
 
     @property
+    def angle(self) -> float:
+        """Angle of the material, rad."""
+        return sum(angle for angle, _ in self.wedges)
+
+    @property
     def joined(self) -> bool:
         """Whether several materials meet."""
         return len(self.wedges) > 1
