@@ -407,8 +407,7 @@ def _solution(
         )
         for side, model in by_shaft.items()
     )
-    askew = measured(misalignment(state.assembly, system))
-    skews = {m.name: (m.value, m.bar) for m in askew}
+    askew = misalignment(state.assembly, system)
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     if housed:
         notes.append(f"deflection lines of {listed(housed)} are relative to the housing")
@@ -429,14 +428,14 @@ def _solution(
         load=load,
         models=by_shaft,
         mesh_forces=state.mesh_forces,
-        misalignment=askew,
+        misalignment=measured(askew),
         displacement=displacement,
         shafts=shafts,
         notes=tuple(notes),
         seconds=seconds,
         mounts=mounts,
         turns=over_a_turn(assembly, state, by_shaft),
-        face_loads=face_loads(state.assembly, system, state.coordinates, skews),
+        face_loads=face_loads(state, errors, askew),
         statics=_statics(assembly, load, shafts),
         lumped=() if load is None else tuple(p.name for p in assembly.scenes[ALONE].ports),
         still=_still(assembly, load),
