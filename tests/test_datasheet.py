@@ -22,9 +22,12 @@ from solidgear.datasheet.language import Language
 from solidgear.datasheet.messages import LANGUAGES, MESSAGES
 from solidgear.datasheet.sections import sections, tiles
 from solidgear.datasheet.shaft import resonances
+from solidgear.datasheet.train import MODES, train_sheet
 from solidgear.show.sketch import SEAT, SPAN
 from solidgear.show.units import ENGINEERING
+from solidgear.strength.stress.at_rest import StressSettings
 
+GEARBOX = Path(__file__).parent.parent / "geometry" / "gearbox_train.toml"
 PACKAGE = Path(__file__).parent.parent / "solidgear" / "datasheet"
 E, DIAMETER, LENGTH, PLACE = 206e9, 0.03, 0.5, 0.2
 FORCE, TORQUE = (300.0, 400.0), 40.0
@@ -389,3 +392,13 @@ def test_the_german_page_of_a_shaft_names_its_sharp_corner():
     words = Language("de", ENGINEERING)
     assert [corner.y for corner in found.corners] == pytest.approx([0.1])
     assert "Kante bei 100 mm" in next(tiles(found, words)).place
+
+
+def test_frequencies_of_a_train_are_those_of_its_list_of_modes():
+    """To all digits: the modes that a page leaves out decide the meshes as well."""
+    train = sg.load_train(GEARBOX)
+    page_, listed = train_sheet(train, None, train.point, StressSettings(), print), {}
+    for mode in sg.system_modes(train):
+        listed[mode.name] = mode.frequency_hz
+    assert len(page_.frequencies) == MODES < len(listed)
+    assert {f.mode: f.hz for f in page_.frequencies}.items() <= listed.items()
