@@ -41,6 +41,7 @@ from solidgear.trains.assembly.turn import StageTurn, over_a_turn
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
+from solidgear.trains.load.meshes_at_rest import MeshesAtRest
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.load.state import OperatingState
 from solidgear.trains.load.static_errors import StaticErrors
@@ -368,6 +369,7 @@ def deflections(
                 f"a {model} shaft has its bearings condensed into it; use one of "
                 f"{', '.join((*CHEAPER, JUDGE))}"
             )
+    MeshesAtRest(assembly, models).begin()
     for side, model in by_shaft.items():
         assembly.shaft_model(side, model)  # no settling to be timed
     operating = Operating(assembly, *models)
