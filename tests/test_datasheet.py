@@ -14,10 +14,18 @@ from made_up_sheet import made_up_shaft, made_up_sheet
 import solidgear as sg
 from solidgear.datasheet import command as command_module
 from solidgear.datasheet import page
-from solidgear.datasheet.at_rest import cautions_of_notch
+from solidgear.datasheet.at_rest import cautions_of_notch, motions
 from solidgear.datasheet.browser import PROGRAMS, browser, pages_of
 from solidgear.datasheet.drawing import WIDE, shaft_svg
-from solidgear.datasheet.facts import DrawnShaft, Force, Frequency, Remark, Trust, UnratedCorner
+from solidgear.datasheet.facts import (
+    DrawnShaft,
+    Force,
+    Frequency,
+    MotionFact,
+    Remark,
+    Trust,
+    UnratedCorner,
+)
 from solidgear.datasheet.language import Language
 from solidgear.datasheet.messages import LANGUAGES, MESSAGES
 from solidgear.datasheet.sections import sections, tiles
@@ -25,7 +33,9 @@ from solidgear.datasheet.shaft import resonances
 from solidgear.datasheet.train import MODES, train_sheet
 from solidgear.show.sketch import SEAT, SPAN
 from solidgear.show.units import ENGINEERING
+from solidgear.strength.deflection.at_rest import deflect
 from solidgear.strength.stress.at_rest import StressSettings
+from solidgear.trains.assembly.assembly import Assembly
 
 GEARBOX = Path(__file__).parent.parent / "geometry" / "gearbox_train.toml"
 PACKAGE = Path(__file__).parent.parent / "solidgear" / "datasheet"
@@ -402,3 +412,21 @@ def test_frequencies_of_a_train_are_those_of_its_list_of_modes():
         listed[mode.name] = mode.frequency_hz
     assert len(page_.frequencies) == MODES < len(listed)
     assert {f.mode: f.hz for f in page_.frequencies}.items() <= listed.items()
+
+
+def test_a_motion_inside_its_bar_is_zero_with_the_bar_in_its_unit():
+    """What symmetry forbids is left by the mesh: no share of it says anything."""
+    words = Language("en", ENGINEERING)
+    assert words.measured(2e-6, "m moved", 0.1) == ("2.000 µm", "± 10.0 %")
+    zero, bar = words.measured(-2e-12, "m moved", 3.0)
+    assert (float(zero.split()[0]), float(bar.split()[1])) == pytest.approx((0.0, 8e-6))
+    motion = MotionFact("gear", 1e-12, 2e-9, 1e-4, 1e-6)
+    page_ = made_up_sheet(motions=(motion,)).to_html()
+    assert "&gt; 100 %" not in page_ and "± 0.002" in page_
+
+
+def test_a_motion_that_is_rounding_is_zero():
+    """Along y nothing loads the shaft; 1e-9 um with an error bar of a per cent would be a number."""
+    scene = sg.load("geometry/shaft_stepped.toml").with_changes(load={"z": 1e3})
+    motion, *_ = motions(deflect(Assembly.of(scene), models=["timoshenko"]))
+    assert motion.axial == 0.0 < motion.radial

@@ -187,9 +187,9 @@ def _numbers(facts: Facts, words: Language) -> Section:
     rows: list[list[Any]] = []
     for figure in facts.figures[:MOST_ROWS]:
         si = "" if figure.unit == "1" else figure.unit
-        value = words.with_bar(figure.value, si, figure.bar).strip()
+        value, bar = words.measured(figure.value, si, figure.bar)
         name = words.measure(figure.name) if facts.train else words.quantity(figure.name)
-        cells = [Cell(figure.value, "strong", value), words.bar(figure.bar)]
+        cells = [Cell(figure.value, "strong", value.strip()), bar.strip()]
         rows.append([name, *cells, words.interval(figure.open)])
     notes = [words.say("note numbers")]
     if not facts.train and facts.drawn:
@@ -346,8 +346,8 @@ def _motions(facts: Facts, words: Language) -> Section:
         parts = (("across", across), ("along", along), ("tilt", about))
         for head, (size, bar, open_, si) in parts if motion.axial else (parts[0], parts[2]):
             share = bar / size if bar is not None and size else None
-            value = Cell(size, "strong", words.with_bar(size, si, share))
-            row: list[Any] = [motion.place, words.say(head), value, words.bar(share)]
+            value, error = words.measured(size, si, share)
+            row: list[Any] = [motion.place, words.say(head), Cell(size, "strong", value), error]
             rows.append([*row, words.between(open_, si)] if ranged else row)
     more = _more(len(facts.motions), MOST_MOTIONS, words)
     notes = (*more, words.say("note motions"))
