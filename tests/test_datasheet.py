@@ -430,3 +430,10 @@ def test_a_motion_that_is_rounding_is_zero():
     scene = sg.load("geometry/shaft_stepped.toml").with_changes(load={"z": 1e3})
     motion, *_ = motions(deflect(Assembly.of(scene), models=["timoshenko"]))
     assert motion.axial == 0.0 < motion.radial
+
+
+def test_a_train_whose_shafts_have_no_error_bars_in_modes_says_so():
+    cut = Trust("corrected", 0.02, True, None, None)
+    shown = made_up_sheet(train=True, trust=cut, frequencies=(Frequency("bending 1", 500.0, None),))
+    assert "What the meshes leave is not known" in shown.to_html()
+    assert "What the meshes leave" not in made_up_sheet().to_html()

@@ -367,7 +367,10 @@ def _frequencies(facts: Facts, words: Language) -> Section:
         value = Cell(frequency.hz, "strong", hertz)
         row = [words.mode(frequency.mode), value, words.bar(frequency.bar)]
         rows.append([*row, words.interval(frequency.open)] if ranged else row)
-    return Section("frequencies", title, Table(title, columns, rows), (), (words.say("note spin"),))
+    notes = [words.say("note spin")]
+    if facts.train and any(frequency.bar is None for frequency in facts.frequencies):
+        notes.append(words.say("note no mesh bars", model=words.model(facts.trust.model)))
+    return Section("frequencies", title, Table(title, columns, rows), (), tuple(notes))
 
 
 def _speeds(facts: Facts, words: Language) -> Section:
