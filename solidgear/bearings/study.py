@@ -146,7 +146,7 @@ def bearing_facts(
     >>> scene = sg.load("geometry/gearbox_catalogue.toml")
     >>> facts = bearing_facts(scene, sg.build(scene, "timoshenko"))
     >>> [(fact.name, fact.data.kind, round(fact.life.life.basic / 1e9, 1)) for fact in facts]
-    [('A', 'cylindrical', 13.8), ('B', 'angular_contact', 23.1)]
+    [('A', 'cylindrical', 13.7), ('B', 'angular_contact', 23.1)]
     """
     bearings = [b for b in scene.bearings if b.catalogue is not None]
     if not bearings:

@@ -123,7 +123,7 @@ def bearing(
     >>> import solidgear as sg
     >>> found = sg.bearing("geometry/gearbox_catalogue.toml")
     >>> [(fact.name, fact.data.kind, round(fact.life.life.basic / 1e9, 1)) for fact in found.facts]
-    [('A', 'cylindrical', 13.9), ('B', 'angular_contact', 22.7)]
+    [('A', 'cylindrical', 13.9), ('B', 'angular_contact', 22.8)]
     """
     if is_train(source):
         for option, value in {"`load`": load, "`speed`": speed, "`case`": case}.items():
