@@ -91,3 +91,21 @@ def test_a_command_that_is_silent_is_found():
     # frequencies are no concern of static numbers
     moving = Printed(0, {"cautions": ["natural frequencies are those at rest"]}, "", "")
     assert not failed(cautions.alike("shaft", {"modes": moving, "deflect": silent}))
+
+
+def test_a_sweep_says_what_any_of_its_rows_has_and_which():
+    """Spin moves no frequency at 60 rpm: the first row has no caution, the others have."""
+    vary = "lubrication.speed=60 rpm,6000 rpm,12000 rpm"
+    swept = sg.sweep(DISC, vary, model="timoshenko", n=2)
+    first, slow, fast = swept["cautions"]
+    assert first is None and "at 6000 rpm" in slow and AT_SPEED in fast
+    (said,) = swept.cautions
+    assert said == f"{slow} (variant 1; alike in 2 of 3 rows, column cautions)"
+
+
+def test_an_optimum_says_what_its_best_design_has():
+    vary, goal = "segment.shaft.diameter=38 mm,40 mm", "max bending 1"
+    still = sg.load(DISC).with_changes(lubrication=None)
+    assert not sg.optimise(still, vary, goal, model="timoshenko").cautions
+    (said,) = sg.optimise(DISC, vary, goal, model="timoshenko").cautions
+    assert "at 12000 rpm spin moves bending 1 by" in said
