@@ -9,8 +9,8 @@ import pytest
 
 import solidgear as sg
 from solidgear.core import WITHIN
-from solidgear.core.judge.deviations import OPEN
 from solidgear.core.gears.wheel import Wheel
+from solidgear.core.judge.deviations import OPEN
 from solidgear.teeth.bars import _against_3d, error_bars, numbers_of
 from solidgear.teeth.contact.cycle import mesh_cycle
 from solidgear.teeth.contact.frame import Frame
