@@ -31,7 +31,7 @@ DEAREST = {
 DEAR = {
     PACKAGE / name
     for name in (
-        "comparison/two/two_trains.py",
+        "two_designs/two_trains.py",
         "core/judge/answer.py",
         "measured/identify.py",
         "parts/own_mesh.py",
