@@ -4,6 +4,7 @@ and a sentence that names the room which is not there.
 
 import functools
 import json
+import operator
 import re
 import shutil
 import subprocess
@@ -73,15 +74,17 @@ def without_cost(data):
             for key, value in data.items()
             if not any(word in key for word in OF_A_RUN)
         }
+    if isinstance(data, str):
+        return re.sub(r"\d+(\.\d+)? (ms|s|MB)\b", "", data)
     return [without_cost(value) for value in data] if isinstance(data, list) else data
 
 
 def same_words(text):
-    """Return a text of a command without times and memory."""
+    """Return what a command prints without times and memory."""
     try:
         return without_cost(json.loads(text))
     except ValueError:
-        return re.sub(r"\d+(\.\d+)? (ms|s|MB)\b", "", text)
+        return without_cost(text)
 
 
 @pytest.fixture(scope="module")
@@ -106,7 +109,7 @@ COMMANDS = [
     ["stiffness", SHAFT, "--json"],
     ["modes", SHAFT, "--json"],
     [*"compare --out out --models lumped,timoshenko,harmonic --no-renders --json".split(), SHAFT],
-    ["options"],
+    ["options", "harmonic"],
     ["schema", "scene"],
     ["schema", "--help"],
     ["--help"],
@@ -134,7 +137,12 @@ def equal_files(alone, whole):
                 json.loads(other.read_text())
             ), name
         elif name.endswith((".png", ".vtu", ".toml", ".step")):
-            assert one.read_bytes() == other.read_bytes(), name
+            # a new scene names the schema that lies beside the program
+            contents = (
+                path.read_bytes().replace(str(folder).encode(), b"")
+                for path, folder in ((one, alone), (other, whole))
+            )
+            assert operator.eq(*contents), name
     return names[0]
 
 
@@ -217,7 +225,7 @@ FIRST = {
         "--vary",
         "bearing.1.scale=0.5,1",
         "--out",
-        "s",
+        "s.csv",
     ],
     "measured": ["correlate", SHAFT, "measured.csv", "--out", "correlated"],
     "backlash": ["nonlinear", "--help"],
