@@ -41,7 +41,7 @@ DEAR = {
         "teeth/over_points.py",
         "teeth/pair_contact.py",
         "trains/assembly/meshes.py",
-        "trains/judge/check_study.py",
+        "guards/check_study.py",
         "trains/response/receptance.py",
         "trains/response/study.py",
         "variants/sweep/bearing_task.py",

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from typing import Any
 
-from solidgear.core import OpenNumbers, Record, Settled, WhereRecord
+from solidgear.core import OpenNumbers, Record, Settled
 from solidgear.core.judge.answer import Answered
+from solidgear.core.judge.record import WhereRecord
 from solidgear.core.registry import added
 from solidgear.core.solve.condensed import Condensed, Coupled
 from solidgear.show.printed import Printed

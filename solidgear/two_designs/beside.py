@@ -14,9 +14,8 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.core import COMPLIANCE, BarredMode, ByName, Quantity, Sheeted
+from solidgear.core import COMPLIANCE, BarredMode, ByName, Quantity, Sheeted, environment
 from solidgear.core.judge.change import Change, ModePair, Side
-from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
 from solidgear.show.command import caution
 from solidgear.show.sheet import Section, Sheet, Terminal, write_folder
