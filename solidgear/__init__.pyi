@@ -107,6 +107,7 @@ from solidgear.exchange.export import export as export
 from solidgear.exchange.matrices.formats import read_matrices as read_matrices
 from solidgear.exchange.matrices.source import port_matrices as port_matrices
 from solidgear.exchange.rexs.study import import_rexs as import_rexs
+from solidgear.guards.check_study import check as check
 from solidgear.measured.correlate import correlate as correlate
 from solidgear.measured.data import Measured as Measured
 from solidgear.measured.data import load_measured as load_measured
@@ -123,7 +124,6 @@ from solidgear.teeth.study import TeethStudy as TeethStudy
 from solidgear.teeth.study import contact as contact
 from solidgear.teeth.train_teeth import TeethModel as TeethModel
 from solidgear.trains.file.train import Train as Train
-from solidgear.trains.judge.check_study import check as check
 from solidgear.trains.judge.study import judge as judge
 from solidgear.trains.load.bearing import bearing as bearing
 from solidgear.trains.loading import load_train as load_train

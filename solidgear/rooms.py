@@ -83,8 +83,26 @@ ADDITIONS = {
         "numbers": "core.judge.cautions:number_cautions",
         "cautions": "guards.check:cautions",
         "open ranges": "variants.budget.budget:beside",
-        "seats": "guards.bearings:misfits",
+        "open numbers": "variants.budget.budget:opened",
+        "seats": "bearings.fit:misfits",
         "directions": "guards.data:facing_one_way",
+    },
+    # guards on what a room adds to a shaft
+    "guard": {"bearing_fit": "bearings.fit:bearing_fit"},
+    "notices of features": {"smeared teeth": "cuts.sector.smearing:smearing"},
+    # what commands of one shaft do with other files, and what they write beside
+    "check": {"train": "trains.judge.check:check_source"},
+    "compare": {
+        "train": "trains.judge.study:judge",
+        "file of a train": "trains.judge.command:compare_train",
+        "two designs": "two_designs.study:beside",
+        "two files": "two_designs.command:compare_two",
+    },
+    "chart": {"budget": "variants.budget.chart:of_record"},
+    "sheet": {
+        "languages": "datasheet.messages:LANGUAGES",
+        "of a record": "datasheet.recorded:recorded_sheet",
+        "of a train": "datasheet.study:sheet",
     },
     # numbers of a train that another room computes
     "mesh stiffness": {
@@ -116,6 +134,10 @@ ADDITIONS = {
         "sheet": "datasheet.printed:SHEET",
         "export": "exchange.printed:EXPORT",
         "import": "exchange.printed:IMPORT",
+    },
+    "printed by compare": {
+        "train": "trains.printed:COMPARISON",
+        "two designs": "two_designs.printed:TWO",
     },
     # matrices of other programs
     "matrices": {

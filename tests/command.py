@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from solidgear.app import app
 from solidgear.core.registry import registered
-from solidgear.exchange.schema.results import schema_of_command
+from solidgear.show.schema.results import schema_of_command
 
 
 def command(*words, **how):

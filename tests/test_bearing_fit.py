@@ -5,8 +5,8 @@ from types import SimpleNamespace
 
 import pytest
 
+from solidgear.bearings.fit import misfits
 from solidgear.core.scene.file import load
-from solidgear.guards.bearings import misfits
 from solidgear.guards.registry import GUARDS
 from solidgear.trains.assembly.layout import contacts, places
 from solidgear.trains.assembly.space import overlaps

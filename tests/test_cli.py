@@ -424,7 +424,7 @@ UNUSED = """
     email.message gmsh matplotlib pint pyvista scipy.interpolate scipy.optimize scipy.stats
     numpy.f2py numpy.testing
     solidgear.backlash solidgear.bearings.solved solidgear.comparison.race.command
-    solidgear.comparison.race.timing solidgear.comparison.two solidgear.core.system
+    solidgear.comparison.race.timing solidgear.two_designs solidgear.core.system
     solidgear.measured solidgear.strength solidgear.trains.assembly solidgear.trains.file
     solidgear.trains.modes solidgear.variants.budget.budget solidgear.variants.sweep
 """.split()

@@ -31,7 +31,7 @@ DEAREST = {
 DEAR = {
     PACKAGE / name
     for name in (
-        "comparison/two/two_trains.py",
+        "two_designs/two_trains.py",
         "core/judge/answer.py",
         "measured/identify.py",
         "parts/own_mesh.py",
@@ -41,7 +41,7 @@ DEAR = {
         "teeth/over_points.py",
         "teeth/pair_contact.py",
         "trains/assembly/meshes.py",
-        "trains/judge/check_study.py",
+        "guards/check_study.py",
         "trains/response/receptance.py",
         "trains/response/study.py",
         "variants/sweep/bearing_task.py",

@@ -7,7 +7,6 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.two.beside import Beside
 from solidgear.core.errors import NoSuchName
 from solidgear.core.judge.answer import Answered
 from solidgear.core.named import ByName, NamedModes
@@ -15,6 +14,7 @@ from solidgear.core.solve.modes import ModeSet
 from solidgear.measured.identify import Identification
 from solidgear.trains.load.bearing import SolvedBearings
 from solidgear.trains.modes.study import SolvedModes
+from solidgear.two_designs.beside import Beside
 from solidgear.variants.sensitivity.run import OfNumber, Sensitivities
 from solidgear.variants.sweep.file_task import Swept
 

@@ -9,8 +9,8 @@ import pytest
 import solidgear as sg
 from solidgear.core.ladder import build
 from solidgear.cuts.features import PressFit
+from solidgear.cuts.sector.smearing import smearing
 from solidgear.guards.details import details
-from solidgear.guards.smearing import smearing
 from solidgear.show.sketch import draw
 from solidgear.strength.stress.conditions import Conditions
 from solidgear.strength.stress.norm.steels import strength_of

@@ -20,14 +20,13 @@ from solidgear.comparison.recording import Findings, as_record, recorded
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.open_numbers import OpenNumbers
 from solidgear.core.judge.record import SCHEMA, Record
-from solidgear.show import viewer
+from solidgear.show import input_tables, viewer
 from solidgear.show.page_parts import data_uri
 from solidgear.show.plot import WIDE
 from solidgear.show.terminal import matrix_table
 from solidgear.show.units import ENGINEERING
 from solidgear.show.viewer import END, START, TURNED
 from solidgear.show.words import engineering, hertz, percent
-from solidgear.trains.page import input_tables
 from tests.made_up_run import STIFFNESS, fixture_results
 from tests.plain import final_table, render_page, verdict_text, write_report
 

@@ -12,6 +12,7 @@ import solidgear as sg
 from solidgear.comparison.page import html
 from solidgear.core.errors import SolidgearError
 from solidgear.core.judge.record import Record
+from solidgear.show.input_tables import scene_facts
 from solidgear.show.table import Cell
 from solidgear.show.terminal import matrix_table
 from solidgear.show.units import (
@@ -25,7 +26,6 @@ from solidgear.show.units import (
     units_named,
 )
 from solidgear.show.viewer import END, START, TURNED
-from solidgear.trains.page.input_tables import scene_facts
 from tests.made_up_run import fixture_results
 from tests.plain import final_table, render_page
 from tests.test_report import shown, text_of

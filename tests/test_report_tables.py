@@ -6,9 +6,8 @@ import solidgear as sg
 from solidgear.comparison.page import tables
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.record import BarRecord, Record
+from solidgear.show.input_tables import bearings, masses, material_words, scene_facts
 from solidgear.show.units import US
-from solidgear.trains.page.input_tables import bearings, masses, scene_facts
-from solidgear.trains.page.tables import material_words
 
 CATALOGUE = sg.load("geometry/gearbox_catalogue.toml").as_dict()
 GIVEN = sg.load("geometry/shaft_stepped.toml").as_dict()

@@ -23,10 +23,10 @@ from solidgear.core.registry import registered
 from solidgear.core.scene.file import load, scene_of
 from solidgear.core.scene.toml_file import describes_train
 from solidgear.core.scene.units import DIMENSIONS, quantity
-from solidgear.exchange.schema.files import KINDS, made, path_of, text_of
-from solidgear.exchange.schema.results import of
-from solidgear.exchange.schema.units import text_of as text_of_quantity
 from solidgear.show.printed import Printed
+from solidgear.show.schema.files import KINDS, made, path_of, text_of
+from solidgear.show.schema.results import of
+from solidgear.show.schema.units import text_of as text_of_quantity
 from solidgear.trains.file.reading import train_of
 
 ROOT = Path(__file__).parents[1]

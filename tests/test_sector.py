@@ -415,8 +415,8 @@ def test_a_spline_is_a_cylinder_with_teeth():
 @pytest.mark.long
 def test_check_says_what_smearing_costs():
     """Bounds of the rule hold for what the sector says of one pinion, and the tolerance decides."""
+    from solidgear.cuts.sector.smearing import expected
     from solidgear.guards.check import check_scene
-    from solidgear.guards.smearing import expected
 
     smeared = TEETH.with_changes(model="pitch_cone")
     scene = shaft(smeared)

@@ -11,7 +11,6 @@ import pytest
 
 import solidgear as sg
 from solidgear.bearings.solved import solved as solved_bearings
-from solidgear.comparison.two.loaded import loaded_changes
 from solidgear.core.errors import SolidgearError
 from solidgear.core.loading import as_written
 from solidgear.core.scene.acting import acting_loads
@@ -25,6 +24,7 @@ from solidgear.strength.deflection.at_rest import deflection
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.load.operation import scene_loads
+from solidgear.two_designs.loaded import loaded_changes
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"
 COUNTERSHAFT = GEOMETRY / "countershaft.toml"

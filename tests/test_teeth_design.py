@@ -8,7 +8,6 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.two.two_trains import two_trains
 from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.flank_shape import FlankShape, Relief
 from solidgear.core.gears.wheel import Wheel
@@ -25,6 +24,7 @@ from solidgear.trains.assembly.tooth_stiffness import tooth_stiffness
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.operation import at_point
 from solidgear.trains.modes.modes import train_modes
+from solidgear.two_designs.two_trains import two_trains
 from solidgear.variants.optimise.command import designs_chart
 from solidgear.variants.optimise.designs import train_designs
 from solidgear.variants.optimise.wish import limit_of, wish_of

@@ -9,11 +9,11 @@ from pathlib import Path
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.two.differences import differences, scene_differences
-from solidgear.comparison.two.two_shafts import two_shafts
 from solidgear.core.quantity import QUANTITIES
 from solidgear.core.scene.uncertain import with_ranges
 from solidgear.show.sketch import draw, extent
+from solidgear.two_designs.differences import differences, scene_differences
+from solidgear.two_designs.two_shafts import two_shafts
 from tests.command import command, page_of
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

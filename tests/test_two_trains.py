@@ -11,8 +11,6 @@ import numpy as np
 import pytest
 
 import solidgear as sg
-from solidgear.comparison.two.differences import differences
-from solidgear.comparison.two.two_trains import others, reactions, two_trains
 from solidgear.core.body import as_supports
 from solidgear.core.errors import SolidgearError
 from solidgear.trains.assembly.assembly import Assembly
@@ -20,6 +18,8 @@ from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.load.strain import strain_shares
 from solidgear.trains.modes.modes import train_modes
 from solidgear.trains.response.respond import respond
+from solidgear.two_designs.differences import differences
+from solidgear.two_designs.two_trains import others, reactions, two_trains
 from tests.command import command, page_of, table
 
 GEOMETRY = Path(__file__).parent.parent / "geometry"

@@ -12,8 +12,8 @@ from pathlib import Path
 from solidgear.bearings.catalogue import Catalogue
 from solidgear.core.scene.stations import Bearing
 from solidgear.core.scene.typed import Model
-from solidgear.exchange.schema.tables import of_model
-from solidgear.exchange.schema.units import words_on_unit
+from solidgear.show.schema.tables import of_model
+from solidgear.show.schema.units import words_on_unit
 
 PAGE = Path(__file__).parent.parent / "guide" / "bearing_keys.md"
 TABLES: dict[str, type[Model]] = {"`[[bearing]]`": Bearing, "`[bearing.catalogue]`": Catalogue}

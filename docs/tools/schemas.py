@@ -2,10 +2,10 @@
 
     python docs/tools/schemas.py
 
-Writes `solidgear/exchange/schema/*.json`.
+Writes `solidgear/show/schema/*.json`.
 """
 
-from solidgear.exchange.schema.files import write
+from solidgear.show.schema.files import write
 
 if __name__ == "__main__":
     write()

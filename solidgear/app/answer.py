@@ -27,7 +27,7 @@ from solidgear.show.units import Units, units_named
 from solidgear.show.words import bar_of, count, percent, seconds
 
 if TYPE_CHECKING:
-    from solidgear.core import WhereRecord
+    from solidgear.core.judge.record import WhereRecord
     from solidgear.core.judge.where import ErrorMap
 
 

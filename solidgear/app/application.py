@@ -15,6 +15,7 @@ from solidgear import __version__
 from solidgear.app.options_alone import options_alone
 from solidgear.core.machine.later import loading
 from solidgear.core.machine.memory import one_command
+from solidgear.core.registry import missing_room, without
 from solidgear.show.command import Progress
 
 HELP = ("-h", "--help")
@@ -42,7 +43,7 @@ GROUPS = {
             "List the scenes that come with solidgear, or copy them into a folder.",
         ),
         "check": Entry(
-            "trains.judge.check_command",
+            "guards.check_command",
             "Say which models hold for a scene or train, which do not, and why; solves light "
             "meshes only.",
         ),
@@ -60,7 +61,7 @@ GROUPS = {
             "List what --set takes: every builder option with default, limits and meaning.",
         ),
         "schema": Entry(
-            "exchange.schema.command",
+            "show.schema.command",
             "Print the JSON Schema of files, for editors, or of what a command prints with --json.",
         ),
     },
@@ -231,8 +232,14 @@ def _imported(name: str) -> Any:
     """Return a command with its options."""
     entry = COMMANDS[name]
     name_of_module = f"solidgear.{entry.module}"
-    with loading(name_of_module):
-        module = import_module(name_of_module)
+    try:
+        with loading(name_of_module):
+            module = import_module(name_of_module)
+    except ModuleNotFoundError as error:
+        if not missing_room(error):
+            raise
+        print(f"solidgear: {name} {without(missing_room(error))}", file=sys.stderr)
+        raise typer.Exit(1) from None
     alone = typer.Typer(add_completion=False, pretty_exceptions_enable=False)
     function = getattr(module, entry.function or name.replace("-", "_"))
     alone.command(name, cls=Told, help=entry.help)(function)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 import typer
 
@@ -15,7 +15,7 @@ from solidgear.comparison.page.sheet import sheet
 from solidgear.comparison.page.write import SHEET, Pictures
 from solidgear.core import ELEMENTS, LADDER, SolidgearError, is_train, listed
 from solidgear.core.machine.start import BEGUN
-from solidgear.datasheet.messages import LanguageChoice
+from solidgear.core.registry import needed
 from solidgear.show.command import Progress, command
 from solidgear.show.folder import held
 from solidgear.show.options import (
@@ -30,16 +30,6 @@ from solidgear.show.options import (
 from solidgear.show.remarks import load
 from solidgear.show.render import Drawing
 from solidgear.show.sheet import Sheet, present
-
-if TYPE_CHECKING:
-    from solidgear.datasheet.result import Datasheet
-
-
-def sheet_of(train: Path, language: str) -> Datasheet:
-    """Return the data sheet of a train, linked to its report."""
-    from solidgear.datasheet.study import sheet as solved  # start-up: for --sheet alone
-
-    return replace(solved(train, language=language), report="report.html")
 
 
 @command
@@ -85,7 +75,7 @@ def compare(
         ),
     ] = False,
     sheet_language: Annotated[
-        LanguageChoice | None,
+        str | None,
         typer.Option(
             "--sheet",
             help="Also write sheet.html, one page to hand on, in a language: en or de.",
@@ -137,24 +127,28 @@ def compare(
         "--shaft": bool(shafts),
         "--mesh": bool(mesh),
     }
+    if sheet_language is not None:
+        languages = needed("sheet", "languages", "--sheet")
+        if sheet_language not in languages:
+            reason = f"{sheet_language!r} is not one of {', '.join(map(repr, languages))}."
+            raise typer.BadParameter(reason, param_hint="'--sheet'")
     if more:
-        # start-up: for two files alone
-        from solidgear.comparison.two.command import compare_two
-        from solidgear.trains.options import Pair
-
         refuse({"--sheet": bool(sheet_language)}, "one file; run solidgear sheet for each of two")
-        mix, of_trains["--tol"] = Pair(pinion or MODEL, gear or MODEL, shafts), tol is not None
-        compare_two([scene, *more], out, mix, mesh, tol, case, run, of_one_shaft, of_trains)
+        of_trains["--tol"] = tol is not None
+        compare_two = needed("compare", "two files", "compare of two files")
+        compare_two(
+            [scene, *more], out, pinion, gear, shafts, mesh, tol, case, run, of_one_shaft, of_trains
+        )
         return
     refuse(of_trains, f"two trains, and {scene} is one, of which every model is solved")
     if is_train(scene):
-        # start-up: for trains alone
-        from solidgear.trains.judge.command import compare_train
-        from solidgear.trains.options import Reduced
-
         refuse({"--case": case is not None}, f"a shaft, and {scene} is a train")
-        pages = [] if sheet_language is None else [sheet_of(scene, str(sheet_language))]
-        compare_train(scene, out, Reduced(tol=tol), renders, run, of_one_shaft)
+        compare_train = needed("compare", "file of a train", str(scene))
+        pages = []
+        if sheet_language is not None:
+            sheet_of = needed("sheet", "of a train", "--sheet")
+            pages = [replace(sheet_of(scene, language=sheet_language), report="report.html")]
+        compare_train(scene, out, tol, renders, run, of_one_shaft)
         for page in pages:
             page.save(out / SHEET, run.units)
         return
@@ -185,7 +179,7 @@ def compare(
                 units=run.units,
                 progress=progress,
                 pictures=pictures,
-                sheet=str(sheet_language or ""),
+                sheet=sheet_language or "",
             )
             if chart and complete:
                 from solidgear.comparison.race.command import run_chart  # start-up: for --chart

@@ -15,8 +15,8 @@ from solidgear.core import LADDER, SolidgearError, nearest, show
 from solidgear.core.ladder.model import Model
 from solidgear.core.machine.whole_file import write_files
 from solidgear.core.models.options import Option, limits
-from solidgear.exchange.schema.files import directive
 from solidgear.show.command import as_typed, command, say
+from solidgear.show.schema.files import directive
 from solidgear.show.table import Table, text, word
 
 KINDS = "; ".join(f"{kind}: {what}" for kind, what in STARTS.items())

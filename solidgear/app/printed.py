@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from solidgear.comparison.printed import TWO
-from solidgear.core import OpenNumbers, Record, Settled, WhereRecord
+from solidgear.core import OpenNumbers, Record, Settled
 from solidgear.core.judge.answer import Answered
+from solidgear.core.judge.record import WhereRecord
+from solidgear.core.registry import added
 from solidgear.core.solve.condensed import Condensed, Coupled
 from solidgear.show.printed import Printed
-from solidgear.trains.printed import COMPARISON
 
 Number = float | None
 
@@ -46,4 +46,4 @@ STIFFNESS = tuple(
     Printed((kind,), SOLVED, optional=(Settled,), sometimes={"bars": dict[str, Number]})
     for kind in (Condensed, Coupled)
 )
-COMPARE = (Record, COMPARISON, TWO)
+COMPARE = (Record, *added("printed by compare").values())

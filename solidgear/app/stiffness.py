@@ -13,7 +13,6 @@ from solidgear.core import (
     COMPLIANCE,
     DOF_NAMES,
     STIFFNESS,
-    Condensed,
     Port,
     Quantity,
     Scene,
@@ -26,7 +25,7 @@ from solidgear.core.judge.bounded import static_bars
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.plain import plain
 from solidgear.core.scene.rules import no_such_point
-from solidgear.core.solve.condensed import Coupled
+from solidgear.core.solve.condensed import Condensed, Coupled
 from solidgear.core.solve.statics import condense
 from solidgear.show.command import Progress, caution, command
 from solidgear.show.open_words import table as open_table

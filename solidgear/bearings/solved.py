@@ -17,10 +17,9 @@ from solidgear.bearings.balance import Linear, Mounted
 from solidgear.bearings.catalogue import Catalogue, Preload, catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
-from solidgear.core import Bearing, Scene, SceneError, SolidgearError, listed
+from solidgear.core import Bearing, Scene, SceneError, SolidgearError, listed, named_case
 from solidgear.core.scene import Lubrication
 from solidgear.core.scene.acting import own_weight, station_loads, weights_of_masses
-from solidgear.core.scene.load_rules import named_case
 
 if TYPE_CHECKING:
     from solidgear.core import Body

@@ -13,10 +13,9 @@ from solidgear.bearings.catalogue import Catalogue, catalogue_of
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.row import Contacts
 from solidgear.bearings.solved import AS_STATED, Choice, Solved, solved
-from solidgear.core import Bearing, Body, Scene, SceneError, SolidgearError, show
+from solidgear.core import Bearing, Body, Scene, SceneError, SolidgearError, named_case, show
 from solidgear.core.plain import plain
 from solidgear.core.scene import BearingLoad
-from solidgear.core.scene.load_rules import named_case
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"

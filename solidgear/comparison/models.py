@@ -10,7 +10,7 @@ import time
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import TYPE_CHECKING, Any, ClassVar, overload
+from typing import Any, ClassVar, overload
 
 from solidgear.comparison.page.write import Pictures, write_all
 from solidgear.comparison.recording import Findings, recorded
@@ -26,6 +26,7 @@ from solidgear.core import (
     change,
     is_train,
     load,
+    name_of_source,
     pinned,
     without_axis,
 )
@@ -41,17 +42,12 @@ from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.machine.memory import one_run
 from solidgear.core.machine.meter import Meter
 from solidgear.core.machine.processes import give_back
+from solidgear.core.registry import addition, needed
 from solidgear.core.scene.rules import without_point
 from solidgear.guards.check import notices
 from solidgear.guards.models import cells_around
 from solidgear.show.remarks import may_be_open
 from solidgear.show.units import units_named
-
-if TYPE_CHECKING:
-    from solidgear.comparison.two.two_shafts import TwoShafts
-    from solidgear.comparison.two.two_trains import TwoTrains
-    from solidgear.trains.file.train import Train
-    from solidgear.trains.judge.comparison import TrainComparison
 
 log = logging.getLogger(__name__)
 Progress = Callable[[str], None]
@@ -125,8 +121,7 @@ class Comparison(Displayed):
         self.record.shown_in = units_named(units).name
         page = None
         if sheet:
-            from solidgear.datasheet.recorded import recorded_sheet  # start-up: for a sheet alone
-
+            recorded_sheet = needed("sheet", "of a record", "sheet.html")
             page = functools.partial(recorded_sheet, self.record, self.scene, sheet)
         return write_all(
             self.record,
@@ -138,18 +133,6 @@ class Comparison(Displayed):
             pictures=pictures,
             sheet=page,
         )
-
-
-@overload
-def compare(source: Scene, other: Scene, /, *, progress: Progress = ...) -> TwoShafts: ...
-
-
-@overload
-def compare(source: Train, other: Train, /, *, progress: Progress = ...) -> TwoTrains: ...
-
-
-@overload
-def compare(source: Train, /, *, progress: Progress = ...) -> TrainComparison: ...
 
 
 @overload
@@ -165,8 +148,8 @@ def compare(
 
 @overload
 def compare(
-    source: Source | Train,
-    models: Source | Train | tuple[str, ...] | None = None,
+    source: Source,
+    models: Any = None,
     *,
     settings: dict[str, dict] | None = None,
     progress: Progress = ...,
@@ -176,13 +159,13 @@ def compare(
 
 @pinned
 def compare(
-    source: Source | Train,
-    models: Source | Train | tuple[str, ...] | None = None,
+    source: Source,
+    models: Any = None,
     *,
     settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,
     solved: Solved = nothing,
-) -> Comparison | TwoShafts | TrainComparison | TwoTrains:
+) -> Any:
     """Solve a scene or a train with several models and compare them; or two of them beside each
     other.
 
@@ -196,7 +179,7 @@ def compare(
     ----------
     source : path, dict, Scene or Train
         A scene or train: its file (TOML), the tables of one, or an object.
-    models : tuple of str, optional
+    models : tuple of str, path, dict, Scene or Train, optional
         Models of the ladder (lumped, euler, timoshenko, harmonic, solid); all by default. The
         lumped one needs one of the others. Another scene in their place is compared with
         the first, each solved as by :func:`answer`; another train, both by harmonic solids. A train
@@ -242,15 +225,12 @@ def compare(
             raise SolidgearError(
                 "settings are for models of one scene; for two the program chooses"
             )
-        from solidgear.comparison.two.study import beside  # start-up: for two alone
-
+        beside = needed("compare", "two designs", "the comparison of two designs")
         return beside(source, models, progress=progress, read=_with_axis)
     if not isinstance(source, Scene) and is_train(source):
         if models or settings:
             raise SolidgearError("models and settings are for one shaft; a train is judged by all")
-        from solidgear.trains.judge.study import judge  # start-up: for trains alone
-
-        return judge(source, progress=progress)
+        return needed("compare", "train", name_of_source(source))(source, progress=progress)
     scene = _with_axis(source)
     models = LADDER.names if models is None else tuple(models)
     check_models(models)
@@ -287,11 +267,8 @@ def _with_axis(source: Source) -> Scene:
 
 def _opened(scene: Scene) -> OpenNumbers:
     """Return the ranges of numbers by open inputs of a scene."""
-    if not may_be_open(scene):
-        return OpenNumbers()
-    from solidgear.variants.budget.budget import opened  # start-up: for open inputs alone
-
-    return opened(scene)
+    opened = addition("remark", "open numbers") if may_be_open(scene) else None
+    return opened(scene) if opened else OpenNumbers()
 
 
 def _run(

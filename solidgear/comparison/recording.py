@@ -18,7 +18,7 @@ from solidgear.core import (
     Scene,
     SolidgearError,
     Solution,
-    WhereRecord,
+    environment,
     number_cautions,
 )
 from solidgear.core.judge.bars import ErrorBar
@@ -45,13 +45,13 @@ from solidgear.core.judge.record import (
     PointRecord,
     PortRecord,
     VariantRecord,
+    WhereRecord,
 )
 from solidgear.core.judge.solving import ENOUGH, Answer
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.verdict import Judgement, judge, percent, trusted
 from solidgear.core.judge.where import recorded_places
 from solidgear.core.ladder.model import LUMPED, SOLID
-from solidgear.core.machine.environment import environment
 from solidgear.core.quantity import FIRST_BENDING
 from solidgear.core.solve.mixtures import mixtures
 from solidgear.show.remarks import load_case

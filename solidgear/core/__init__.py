@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from solidgear.core.judge.deviations import WITHIN, gap_verdict
     from solidgear.core.judge.open_numbers import OpenNumbers
     from solidgear.core.judge.quantities import change, size
-    from solidgear.core.judge.record import Record, WhereRecord
+    from solidgear.core.judge.record import Record
     from solidgear.core.judge.settle import Settled, bars_of_modes, settle
     from solidgear.core.judge.solution import Solution
     from solidgear.core.ladder import build
@@ -31,6 +31,7 @@ if TYPE_CHECKING:
     from solidgear.core.ladder.model import BEAM
     from solidgear.core.ladder.registry import LADDER
     from solidgear.core.loading import explained, load
+    from solidgear.core.machine.environment import environment
     from solidgear.core.machine.threads import pinned
     from solidgear.core.machine.whole_file import whole
     from solidgear.core.named import ByName
@@ -53,12 +54,12 @@ if TYPE_CHECKING:
         name_of_source,
     )
     from solidgear.core.scene.limits import TOUCH
+    from solidgear.core.scene.load_rules import named_case
     from solidgear.core.scene.outline import Outline
     from solidgear.core.scene.shaft import without_axis
     from solidgear.core.scene.typed import Model
     from solidgear.core.scene.units import DIMENSIONS, Length, PositiveLength, SignedAngle
     from solidgear.core.scene.written import Range, Written
-    from solidgear.core.solve.condensed import Condensed
     from solidgear.core.solve.modes import Mode, ModeSet, modes
     from solidgear.core.solve.statics import flexibility
     from solidgear.core.system.system import System
@@ -74,7 +75,7 @@ __all__ = [
     "Body",
     "ByName",
     "COMPLIANCE",
-    "Condensed",
+    "named_case",
     "DIMENSIONS",
     "DOF_NAMES",
     "Document",
@@ -107,7 +108,7 @@ __all__ = [
     "System",
     "TOUCH",
     "WITHIN",
-    "WhereRecord",
+    "environment",
     "as_supports",
     "bars_of_modes",
     "build",
@@ -164,7 +165,6 @@ _WHERE = {
     "change": "solidgear.core.judge.quantities",
     "size": "solidgear.core.judge.quantities",
     "Record": "solidgear.core.judge.record",
-    "WhereRecord": "solidgear.core.judge.record",
     "Settled": "solidgear.core.judge.settle",
     "bars_of_modes": "solidgear.core.judge.settle",
     "settle": "solidgear.core.judge.settle",
@@ -175,6 +175,7 @@ _WHERE = {
     "LADDER": "solidgear.core.ladder.registry",
     "explained": "solidgear.core.loading",
     "load": "solidgear.core.loading",
+    "environment": "solidgear.core.machine.environment",
     "pinned": "solidgear.core.machine.threads",
     "whole": "solidgear.core.machine.whole_file",
     "ByName": "solidgear.core.named",
@@ -204,7 +205,7 @@ _WHERE = {
     "SignedAngle": "solidgear.core.scene.units",
     "Range": "solidgear.core.scene.written",
     "Written": "solidgear.core.scene.written",
-    "Condensed": "solidgear.core.solve.condensed",
+    "named_case": "solidgear.core.scene.load_rules",
     "Mode": "solidgear.core.solve.modes",
     "ModeSet": "solidgear.core.solve.modes",
     "modes": "solidgear.core.solve.modes",

@@ -2,7 +2,7 @@
 
 The core names none of its features.  It asks for the additions of a kind, such as ``feature``
 or ``solid body``, and :mod:`solidgear.rooms` says where each addition stands.  A room that is not
-installed adds nothing.
+there adds nothing; what cannot do without it is refused in a sentence that names the room.
 """
 
 from __future__ import annotations
@@ -10,6 +10,8 @@ from __future__ import annotations
 from functools import cache
 from importlib import import_module
 from typing import Any
+
+from solidgear.core.errors import SolidgearError
 
 _PLACES: dict[str, dict[str, str]] = {}
 
@@ -42,11 +44,32 @@ def addition(kind: str, name: str) -> Any:
     try:
         return getattr(import_module(module), attribute)
     except ModuleNotFoundError as error:
-        if _is_room(error.name or ""):
+        if missing_room(error):
             return None
         raise  # a wrong place, or a library that is missing
 
 
-def _is_room(module: str) -> bool:
-    """Return True for a package right below solidgear: that of the addition or one it builds on."""
-    return module.startswith("solidgear.") and module.count(".") == 1
+def needed(kind: str, name: str, what: str) -> Any:
+    """Return an addition that `what` cannot do without; refuse where its room is not there."""
+    found = addition(kind, name)
+    if found is None:
+        raise SolidgearError(f"{what} {absent(kind, name)}")
+    return found
+
+
+def absent(kind: str, name: str) -> str:
+    """Return what is wrong with an addition whose room is not there; nothing for one that is."""
+    if name not in _PLACES.get(kind, {}) or addition(kind, name) is not None:
+        return ""
+    return without(_PLACES[kind][name].split(".")[1])
+
+
+def without(room: str) -> str:
+    """Return the words on what cannot do without a room."""
+    return f"needs the room {room!r} of solidgear, which is not installed"
+
+
+def missing_room(error: ModuleNotFoundError) -> str:
+    """Return the room that is not there, a folder right below solidgear; nothing for another module."""
+    package, _, room = (error.name or "").partition(".")
+    return room if package == "solidgear" and room and "." not in room else ""

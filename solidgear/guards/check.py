@@ -24,6 +24,7 @@ from solidgear.core.judge.effort import heavy_meshes
 from solidgear.core.judge.record import GuardRecord
 from solidgear.core.ladder.model import LUMPED, SOLID
 from solidgear.core.plain import plain
+from solidgear.core.registry import added
 from solidgear.core.scene.closed_form import mass_properties, whole_mass
 from solidgear.core.scene.own_mass import beside, mass_with_masses, own_mass
 from solidgear.core.scene.shaft import feature_labels, resolved
@@ -32,7 +33,6 @@ from solidgear.guards.notice import LEVELS, Notice, Notices, beams, everything
 from solidgear.guards.probe import Probe
 from solidgear.guards.registry import GUARDS
 from solidgear.guards.round_part import against_the_part, described, of_files
-from solidgear.guards.smearing import smearing
 
 if TYPE_CHECKING:
     from solidgear.core import Scene
@@ -280,7 +280,9 @@ def _verdict(model: str, records: Iterable[GuardRecord]) -> Verdict:
 
 def _beyond_the_segments(scene: Scene) -> Iterator[Notice]:
     """Yield notices on features, and on models that answer for the plain part only."""
-    yield from smearing(scene)
+    if scene.features:
+        for of_features in added("notices of features").values():
+            yield from of_features(scene)
     yield from details(scene)
     features = resolved(scene)
     if not features:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from solidgear.guards import bearings, data, edges, elements, lumped, models
+from solidgear.core.registry import added
+from solidgear.guards import data, edges, elements, lumped, models
 from solidgear.guards.notice import Notices
 from solidgear.guards.probe import Probe
 
@@ -25,7 +26,7 @@ GUARDS: dict[str, Callable[[Probe], Notices]] = {
         data.one_way,
         data.axial_support,
         data.split_pair,
-        bearings.bearing_fit,
+        *added("guard").values(),
         models.beam_against_solid,
         models.slenderness,
         models.shoulder,

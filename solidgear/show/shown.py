@@ -17,9 +17,9 @@ from solidgear.show.table import Cell, Column, Table
 from solidgear.show.words import bar_of, percent
 
 if TYPE_CHECKING:
-    from solidgear.core import Body, Condensed, Mode, ModeSet, Scene
+    from solidgear.core import Body, Mode, ModeSet, Scene
     from solidgear.core.judge.answer import Answered
-    from solidgear.core.solve.condensed import Coupled
+    from solidgear.core.solve.condensed import Condensed, Coupled
 
 #: shapes that a picture shows unless told otherwise
 MOST_SHAPES = 6

@@ -14,8 +14,8 @@ from solidgear.show.scales import HEAT, Axis, Shade, in_percent
 from solidgear.show.words import percent
 
 if TYPE_CHECKING:
-    from solidgear.core import Record, WhereRecord
-    from solidgear.core.judge.record import PlaceRecord
+    from solidgear.core import Record
+    from solidgear.core.judge.record import PlaceRecord, WhereRecord
 
 #: shares below this are all of one colour
 LEAST = 1e-4

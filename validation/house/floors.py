@@ -22,7 +22,7 @@ CORE = {
     "core.display": set(),
     "core.plain": set(),
     "core.named": {"core.errors"},
-    "core.registry": set(),
+    "core.registry": {"core.errors"},
     "core.safety": set(),
     "core.frames": {"core.errors"},
     "core.springs": {"core.errors"},
@@ -47,14 +47,15 @@ CORE_FLOORS = (
     "core.system",
     "core.judge",
 )
-#: how results are shown, then a room a question, then the command line
-FEATURES = (
-    "show",
+#: how results are shown, what is said about them, one shaft by all models, and the command line: with
+#: the core the base, which needs none of the rooms below
+BASE = ("show", "guards", "comparison", "app")
+#: rooms of features, each of which can be absent
+ROOMS = (
     "petsc",
     "parts",
     "cuts",
     "bearings",
-    "guards",
     "trains",
     "strength",
     "teeth",
@@ -63,8 +64,7 @@ FEATURES = (
     "measured",
     "backlash",
     "datasheet",
-    "comparison",
-    "app",
+    "two_designs",
 )
 
 
@@ -77,7 +77,7 @@ def room_of(module: str) -> str:
 def floors() -> dict[str, set[str]]:
     """Return for each room the rooms that it may import."""
     below = dict(CORE)
-    for room in (*CORE_FLOORS, *FEATURES):
+    for room in (*CORE_FLOORS, *BASE, *ROOMS):
         below[room] = {*below}
     return below
 

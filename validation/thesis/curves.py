@@ -9,13 +9,13 @@ from functools import cache
 
 import numpy as np
 
-from solidgear.comparison.two.shares import Bar, shares_chart
-from solidgear.comparison.two.two_trains import TwoTrains, motions, two_trains
 from solidgear.show.plot import Chart
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.response.respond import respond
 from solidgear.trains.response.response import TrainResponse
+from solidgear.two_designs.shares import Bar, shares_chart
+from solidgear.two_designs.two_trains import TwoTrains, motions, two_trains
 from validation.thesis import claims
 from validation.thesis.claims import AXES, WAYS, fourteen, mounted
 from validation.thesis.contact import WAYS as WAYS_OF_CONTACT

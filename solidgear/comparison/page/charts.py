@@ -13,6 +13,7 @@ from typing import Any
 from solidgear.comparison.race.race import CHARTED
 from solidgear.core import COMPLIANCE, Quantity, Record
 from solidgear.core.judge.record import LevelRecord, ModelRecord, ModeRecord, relative_change
+from solidgear.core.registry import addition
 from solidgear.show.mode_charts import mac_panel
 from solidgear.show.panel import GREY, SHAPES, Panel, Series, readout, tolerance_line, wrapped
 from solidgear.show.plot import NARROW, WIDE, Chart, in_columns, page_svg
@@ -20,7 +21,6 @@ from solidgear.show.scales import Axis, in_percent
 from solidgear.show.sketch import sketch_svg
 from solidgear.show.where_chart import where_chart
 from solidgear.show.words import grouped, hertz, percent, seconds, small
-from solidgear.variants.budget.chart import of_record as budget_chart
 
 #: what the meshes differ in -> label of the axis
 AXIS = {
@@ -373,9 +373,15 @@ def attachment_chart(record: Record, width: float = WIDE) -> Chart | None:
     return _bars(labels, columns, "relative to averaged ties of the same model", width)
 
 
+def _budget_chart(record: Record, width: float) -> Chart | None:
+    """Return the chart of what open inputs leave open."""
+    chart = addition("chart", "budget")
+    return chart(record, width) if chart else None
+
+
 #: those of panels, for a page of a width
 DESCRIBED: dict[str, Callable[[Record, float], Chart | None]] = {
-    "budget": budget_chart,
+    "budget": _budget_chart,
     "modes": mode_chart,
     "mac": mac_chart,
     "convergence": convergence_chart,

@@ -23,7 +23,7 @@ from solidgear.core.judge.record import ModelRecord, VerdictRecord, relative_cha
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.ladder.model import LUMPED
 from solidgear.core.quantity import AT, FIRST_BENDING
-from solidgear.show import open_words
+from solidgear.show import input_tables, open_words
 from solidgear.show.matrices import entry
 from solidgear.show.page_parts import Contents, data_uri, template
 from solidgear.show.plot import page_svg
@@ -32,7 +32,6 @@ from solidgear.show.table import Cell, Table
 from solidgear.show.units import Units, digits_for, units_named
 from solidgear.show.viewer import TURNED, fragment_of
 from solidgear.show.words import DASH, bar_percent, percent, plus_minus, seconds, short_percent
-from solidgear.trains.page import input_tables
 
 log = logging.getLogger(__name__)
 

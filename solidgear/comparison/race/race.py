@@ -18,8 +18,7 @@ from typing import Any
 
 import numpy as np
 
-from solidgear.core import Quantity
-from solidgear.core.machine.environment import environment
+from solidgear.core import Quantity, environment
 from solidgear.core.plain import plain
 from solidgear.core.quantity import C_ZZ, FIRST_BENDING
 from solidgear.show.sheet import write_json

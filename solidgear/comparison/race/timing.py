@@ -28,7 +28,6 @@ from solidgear.core import (
     LADDER,
     QUANTITIES,
     Body,
-    Condensed,
     Quantity,
     Scene,
     SolidgearError,
@@ -44,6 +43,7 @@ from solidgear.core.ladder.model import LUMPED
 from solidgear.core.machine.meter import processor_seconds
 from solidgear.core.machine.patience import Patience
 from solidgear.core.quantity import FIRST_BENDING
+from solidgear.core.solve.condensed import Condensed
 from solidgear.core.solve.families import FAMILIES
 
 log = logging.getLogger(__name__)

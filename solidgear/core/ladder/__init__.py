@@ -6,8 +6,8 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING
 
-from solidgear.core.errors import SolidgearError, nearest, show
-from solidgear.core.ladder.model import SOLID
+from solidgear.core.errors import SolidgearError, show
+from solidgear.core.ladder.model import SOLID, unknown_model
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.ladder.remedies import refusal
 from solidgear.core.machine.memory import NoRoom, begin
@@ -97,10 +97,7 @@ def build(scene: Shaft, fidelity: str, **options) -> Body:
     True
     """
     if fidelity not in LADDER.bodies:
-        raise SolidgearError(
-            f"model {show(fidelity, 40)} is unknown{nearest(fidelity, LADDER.bodies)}; "
-            f"use one of {', '.join(LADDER.bodies)}"
-        )
+        raise SolidgearError(unknown_model(fidelity, LADDER.bodies))
     if not hasattr(scene, "segments"):
         raise SolidgearError(
             f"build: {show(str(scene), 40)} is no Scene: read it first, by sg.load"

@@ -10,7 +10,7 @@ from solidgear.core.errors import NoSuchName, SolidgearError, listed, nearest, s
 from solidgear.core.factoring import Factoring
 from solidgear.core.models.kinds import BODIES, CYCLIC
 from solidgear.core.models.options import FACTORING_OPTIONS, Option, checked
-from solidgear.core.registry import added
+from solidgear.core.registry import absent, added
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
@@ -231,10 +231,7 @@ class Ladder:
         for model in self.models:
             if model.name == name:
                 return model
-        raise NoSuchName(
-            f"model {show(name, 40)} is unknown{nearest(name, self.names)}; "
-            f"use one of {', '.join(self.names)}"
-        )
+        raise NoSuchName(unknown_model(name, self.names))
 
     @property
     def names(self) -> tuple[str, ...]:
@@ -264,3 +261,11 @@ class Ladder:
     def of(self, *families: str) -> tuple[str, ...]:
         """Return the models of some families."""
         return tuple(m.name for m in self.models if m.family in families)
+
+
+def unknown_model(name: str, names: tuple[str, ...]) -> str:
+    """Return the reason why a name that is none of a model's is refused."""
+    missing = absent("model", name)
+    if missing:
+        return f"model {name} {missing}"
+    return f"model {show(name, 40)} is unknown{nearest(name, names)}; use one of {', '.join(names)}"

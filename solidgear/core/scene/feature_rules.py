@@ -8,7 +8,7 @@ from typing import Annotated, Any
 from pydantic import BeforeValidator, SerializeAsAny
 
 from solidgear.core.errors import SceneError
-from solidgear.core.registry import added
+from solidgear.core.registry import absent, added
 from solidgear.core.scene.feature import OnSegment
 from solidgear.core.scene.parts import Segment
 
@@ -22,7 +22,7 @@ def _made(value: Any) -> Any:
         return value
     kind = kinds_of_features().get(value["kind"])
     if kind is None:
-        raise SceneError(unknown_kind(kinds_of_features()), path=("kind",))
+        raise SceneError(unknown_kind(value["kind"], kinds_of_features()), path=("kind",))
     return kind(**value)
 
 
@@ -31,9 +31,10 @@ def kinds_of_features() -> dict[str, type[OnSegment]]:
     return added("feature")
 
 
-def unknown_kind(kinds: Iterable[str]) -> str:
+def unknown_kind(kind: Any, kinds: Iterable[str]) -> str:
     """Return the reason why a feature of another kind is refused."""
-    return f"unknown kind; write one of {', '.join(map(repr, kinds))}"
+    missing = absent("feature", kind) if isinstance(kind, str) else ""
+    return missing or f"unknown kind; write one of {', '.join(map(repr, kinds))}"
 
 
 #: one of several models, which its kind tells apart

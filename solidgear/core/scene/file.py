@@ -448,7 +448,7 @@ class _Reading:
             return [
                 self._row(kinds[kind], path, table, name=f"{kind.replace('_', ' ')} {index + 1}")
             ]
-        reason = unknown_kind(kinds)
+        reason = unknown_kind(kind, kinds)
         if "kind" not in table:
             reason = (
                 'this key is missing; it gives the sort of the feature, such as kind = "keyway"'

@@ -23,7 +23,7 @@ from solidgear.core.scene.support import (
     held_matrix,
     sliding,
 )
-from solidgear.core.scene.tables import Absent
+from solidgear.core.scene.tables import refused
 from solidgear.core.scene.typed import Model, Problems
 from solidgear.core.scene.units import (
     POSITION_DECIMALS,
@@ -39,7 +39,7 @@ from solidgear.core.scene.written import Written
 if TYPE_CHECKING:
     from solidgear.core.scene.tables import BearingData as Catalogue
 else:
-    Catalogue = addition("table", "catalogue") or Absent
+    Catalogue = addition("table", "catalogue") or refused("catalogue")
 
 
 def _catalogue_keys() -> Collection[str]:

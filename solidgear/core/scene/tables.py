@@ -9,15 +9,17 @@ from typing import Annotated, Any, Protocol
 from pydantic import BeforeValidator, TypeAdapter, ValidationError
 
 from solidgear.core.errors import SceneError, scene_error
-from solidgear.core.registry import addition
+from solidgear.core.registry import absent, addition
 
 
-def _refuse(value: Any) -> Any:
-    raise SceneError("belongs to a part of solidgear that is not installed")
+def _refuse(table: str) -> Any:
+    """Refuse a table whose room is not there."""
+    raise SceneError(absent("table", table))
 
 
-#: type of a table whose room is not installed
-Absent = Annotated[Any, BeforeValidator(_refuse)]
+def refused(table: str) -> Any:
+    """Return the type of a table whose room is not there."""
+    return Annotated[Any, BeforeValidator(lambda value: _refuse(table))]
 
 
 class BearingData(Protocol):
@@ -61,7 +63,9 @@ class Pairing:
     """
 
     #: type of the key
-    Words: Any = Annotated[tuple, BeforeValidator(lambda value: _refuse(value) if value else ())]
+    Words: Any = Annotated[
+        tuple, BeforeValidator(lambda value: _refuse("arrangement") if value else ())
+    ]
 
     def read_pairs(self, words: Any, tables: Sequence[Mapping[str, Any]]) -> list | None:
         """Return the pairs that the words of a file name; None where tables are wrong."""
@@ -77,8 +81,8 @@ class PartReader:
     reads it the table is refused.
     """
 
-    Table: Any = Absent  #: type of the table
-    Body: Any = Absent  #: type of the body that it becomes
+    Table: Any = refused("body")  #: type of the table
+    Body: Any = refused("body")  #: type of the body that it becomes
 
     def check_tables(self, tables: Mapping[str, Any]) -> None:
         """Refuse tables of a file that its body cannot have."""
@@ -93,7 +97,7 @@ class PartReader:
 
     def refuse_parts(self, table: Any, folder: Path) -> Any:
         """Refuse the table."""
-        _refuse(table)
+        _refuse("body")
 
     recognise = refuse_parts
 
@@ -107,7 +111,7 @@ def with_list(tables: Mapping[str, Any], folder: Path) -> dict[str, Any]:
     """Return the tables of a scene with bearings of the list that it names."""
     complete = addition("table", "list of bearings")
     if complete is None:
-        return dict(tables) if tables.get("bearings") is None else _refuse(tables)
+        return dict(tables) if tables.get("bearings") is None else _refuse("list of bearings")
     return complete(tables, folder)
 
 

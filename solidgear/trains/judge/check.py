@@ -11,7 +11,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from solidgear.core import HARMONIC, SolidgearError, build, pinned
+from solidgear.core import HARMONIC, SolidgearError, Source, build, pinned
 from solidgear.guards.check import BEST, Check, Verdict, check_scene, record
 from solidgear.guards.notice import Notice, Notices
 from solidgear.guards.probe import Probe
@@ -35,6 +35,7 @@ from solidgear.trains.modes.modes import (
     unpublished_lines,
     wrench_lines,
 )
+from solidgear.trains.options import Reduced
 
 #: a loss factor below this gives peaks whose height is a matter of the loss alone
 LITTLE_LOSS = 1e-3
@@ -44,6 +45,11 @@ ALONE = (
 )
 #: name of the guard of what concerns the train as a whole
 TRAIN = "train"
+
+
+def check_source(source: Source) -> Check:
+    """Check a train from its path, tables or object."""
+    return check_train(Reduced().assembly(source))
 
 
 @pinned

@@ -40,7 +40,7 @@ def judge_system(
 def compare_train(
     train: Path,
     out: Path,
-    reduced: Reduced,
+    tol: float | None,
     renders: bool,
     run: Shown,
     options: dict[str, bool],
@@ -56,7 +56,7 @@ def compare_train(
         "every mix of its models is judged; add further ones by solidgear judge-system --against"
     )
     refuse(options, f"one shaft, and {train} is a train: {instead}")
-    _judged(train, out, reduced, run, renders=renders)
+    _judged(train, out, Reduced(tol=tol), run, renders=renders)
 
 
 def _judged(

@@ -11,8 +11,7 @@ from pathlib import Path
 from time import perf_counter
 from typing import Any, ClassVar
 
-from solidgear.core import Sheeted
-from solidgear.core.machine.environment import environment
+from solidgear.core import Sheeted, environment
 from solidgear.core.plain import plain
 from solidgear.core.scene.bearing_stiffness import stiffness_entries
 from solidgear.show.turning import Turned

@@ -7,6 +7,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from solidgear.show import input_tables
 from solidgear.show.command import caution
 from solidgear.show.folder import begun
 from solidgear.show.page_parts import figures
@@ -22,7 +23,6 @@ from solidgear.trains.judge.comparison import Pictures, TrainComparison
 from solidgear.trains.judge.judge import Departure, Verdict
 from solidgear.trains.modes.modes import unpublished_lines
 from solidgear.trains.modes.sheet import frequencies
-from solidgear.trains.page import input_tables
 from solidgear.trains.page import tables as train_tables
 from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.page.files import crossings, over_frequency

@@ -23,9 +23,9 @@ from solidgear.core import (
     explained,
     is_train,
     name_of_source,
+    named_case,
 )
 from solidgear.core.loading import as_written
-from solidgear.core.scene.load_rules import named_case
 from solidgear.core.scene.toml_file import name_of
 from solidgear.show.options import speed_of
 from solidgear.show.sheet import Sheet

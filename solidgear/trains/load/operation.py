@@ -22,11 +22,10 @@ import numpy as np
 
 from solidgear.bearings.catalogued import Catalogued
 from solidgear.bearings.solved import AS_STATED, Choice, catalogued_bearings, wants_equilibrium
-from solidgear.core import Body, SceneError, SolidgearError, System, listed
+from solidgear.core import Body, SceneError, SolidgearError, System, listed, named_case
 from solidgear.core.bounds.refining import Meshed
 from solidgear.core.loading import MESH
 from solidgear.core.scene.acting import station_loads
-from solidgear.core.scene.load_rules import named_case
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.housing import housing_port
 from solidgear.trains.assembly.layout import force_on, mesh_forces, rotor_torques

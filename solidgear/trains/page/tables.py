@@ -8,9 +8,10 @@ from math import degrees
 from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
+from solidgear.show.input_tables import mark, material_words
 from solidgear.show.table import Cell, Column, Table, quantity, text, word
 from solidgear.show.units import ENGINEERING, Units, engineering
-from solidgear.show.words import DASH, hertz, percent, whole
+from solidgear.show.words import hertz, percent, whole
 
 if TYPE_CHECKING:
     from solidgear.trains.assembly.orders import Crossing
@@ -108,14 +109,6 @@ def housing(response: TrainResponse, units: Units = ENGINEERING) -> Table:
     return Table("Loads of mounts and accelerations", columns, rows, note)
 
 
-def material_words(material: Mapping[str, Any], units: Units) -> str:
-    """Return a material by its name, where it has one, and its constants."""
-    modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
-    density = f"{units.given(material.get('density'), 'kg/m³')} {units.unit('kg/m³')}"
-    words = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density}"
-    return f"{material['name']}: {words}" if material.get("name") else words
-
-
 def _materials(scene: Mapping[str, Any], units: Units) -> str:
     """Return materials of a shaft, each with the segments that are not of the first one."""
     parts: dict[str, list[str]] = {material_words(scene["material"], units): []}
@@ -169,11 +162,6 @@ def _errors(mesh: Mapping[str, Any], units: Units) -> str:
     """Return the transmission errors of planets with sun and ring."""
     both = (mesh[f"{mate}_error"] or mesh["transmission_error"] for mate in ("sun", "ring"))
     return " and ".join(dict.fromkeys(_error(error, units) for error in both))
-
-
-def mark(status: str) -> Cell:
-    """Return the status of an input, in its colour."""
-    return Cell(status, f"mark {status}".rstrip())
 
 
 def _vector(values, digits: int) -> str:

@@ -16,10 +16,10 @@ from typing import Any, Protocol
 
 from solidgear.bearings.bearing_list import read_list, with_listed
 from solidgear.bearings.catalogue import Catalogue, catalogue_of
+from solidgear.bearings.fit import misfits_of
 from solidgear.core import TOUCH, Scene, SceneError, SolidgearError, listed, show
 from solidgear.core.scene.paths import Keys, Tables, keys_of, label_of, replace_entry
 from solidgear.core.scene.paths import entry as value_in_file
-from solidgear.guards.bearings import misfits_of
 from solidgear.variants.sweep.entries import Entry, Owner, Place, in_si, place_of
 
 #: keys of catalogue data that a designation does not share with another

@@ -11,9 +11,9 @@ from __future__ import annotations
 
 import numpy as np
 
-from solidgear.comparison.two.two_shafts import two_shafts
 from solidgear.core.quantity import COMPLIANCE, Quantity
 from solidgear.core.scene import Scene
+from solidgear.two_designs.two_shafts import two_shafts
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import CLAIM, Found, Row
 from validation.campaign.scenes.shafts import between, random_scene

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from math import degrees
 
-from solidgear.comparison.two.beside import NumberChange, band
 from solidgear.core.judge.change import Change
 from solidgear.show.sheet import Section
 from solidgear.show.table import WORD, Cell, Column, Table, in_units, quantity, word
@@ -17,6 +16,7 @@ from solidgear.strength.deflection.at_rest import Deflection
 from solidgear.strength.deflection.shaft import BearingState
 from solidgear.strength.deflection.sheet import meanings
 from solidgear.trains.file.operation import OperatingPoint
+from solidgear.two_designs.beside import NumberChange, band
 
 #: train A and B, None where it is not deflected
 Both = Sequence[Deflection | None]

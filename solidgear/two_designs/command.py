@@ -7,16 +7,16 @@ import os
 from functools import partial
 from pathlib import Path
 
-from solidgear.comparison.two.study import are_trains, beside
-from solidgear.comparison.two.two_shafts import TwoShafts
-from solidgear.comparison.two.two_trains import TwoTrains
 from solidgear.core import SolidgearError
 from solidgear.show.command import Progress, say
-from solidgear.show.options import Shown, refuse
+from solidgear.show.options import MODEL, Shown, refuse
 from solidgear.show.remarks import load
 from solidgear.show.sheet import Sheet, present
 from solidgear.show.units import units_named
 from solidgear.trains.options import Pair
+from solidgear.two_designs.study import are_trains, beside
+from solidgear.two_designs.two_shafts import TwoShafts
+from solidgear.two_designs.two_trains import TwoTrains
 
 #: where options of one shaft lead
 TRAINS = "for two trains --pinion, --gear and --shaft choose the models"
@@ -25,7 +25,9 @@ TRAINS = "for two trains --pinion, --gear and --shaft choose the models"
 def compare_two(
     files: list[Path],
     out: Path,
-    mix: Pair,
+    pinion: str | None,
+    gear: str | None,
+    shafts: list[str] | None,
     mesh: str | None,
     tol: float | None,
     case: str | int | None,
@@ -48,7 +50,7 @@ def compare_two(
         say(json.dumps(data) if run.as_json else sentence)
         return
 
-    read = partial(load, case=case)
+    mix, read = Pair(pinion or MODEL, gear or MODEL, shafts), partial(load, case=case)
 
     def study(progress: Progress) -> Sheet:
         first, second = files

@@ -9,8 +9,8 @@ from pydantic.fields import FieldInfo
 
 from solidgear.core.scene.typed import Holds, Model
 from solidgear.core.scene.written import Kinds
-from solidgear.exchange.schema.nodes import Node, Nodes, also, described, table
-from solidgear.exchange.schema.sentences import sentences, summary
+from solidgear.show.schema.nodes import Node, Nodes, also, described, table
+from solidgear.show.schema.sentences import sentences, summary
 
 
 def of_model(kind: type[Model]) -> Node:

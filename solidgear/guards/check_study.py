@@ -16,6 +16,7 @@ from solidgear.core import (
     name_of_source,
 )
 from solidgear.core.loading import under_case
+from solidgear.core.registry import needed
 from solidgear.guards.check import Check, check_scene
 from solidgear.show.options import MODEL
 
@@ -61,17 +62,13 @@ def check(
     usual = model == MODEL and not options
     if is_train(source):
         under_case(source, case)
-        # start-up: a shaft has no use for the studies of trains
-        from solidgear.trains.judge.check import check_train
-        from solidgear.trains.options import Reduced
-
         if not usual:
             option = "`options`" if options else "`model`"
             raise SolidgearError(
                 f"{option} is for one shaft, and {name_of_source(source)} is a train: for other "
                 "models and meshes run check on the file of a shaft"
             )
-        return check_train(Reduced().assembly(source))
+        return needed("check", "train", name_of_source(source))(source)
     scene = load(under_case(source, case))
     # a model of revolution is looked at on the plain part, and the check says so
     part = scene if LADDER[model].can_model(scene) else scene.plain

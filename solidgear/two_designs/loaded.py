@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from math import hypot, sqrt
 
-from solidgear.comparison.two.beside import NumberChange
 from solidgear.core import Scene, SolidgearError
 from solidgear.core.judge.change import Change
 from solidgear.strength.deflection.at_rest import Deflection, Measured, deflections
 from solidgear.strength.load import AT_REST
 from solidgear.trains.assembly.assembly import NO_MODES, Assembly
 from solidgear.trains.load.static_errors import FORBIDDEN
+from solidgear.two_designs.beside import NumberChange
 
 #: motions across the shaft by their words: components, and SI unit
 ACROSS = {"deflection": (("x", "z"), "m moved"), "slope": (("thx", "thz"), "rad moved")}

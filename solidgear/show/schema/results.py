@@ -17,11 +17,11 @@ from typing import Annotated, Any, Literal, NamedTuple, Union, get_args, get_ori
 import numpy as np
 from pydantic import BaseModel
 
-from solidgear.core import SolidgearError, addition, nearest, show
-from solidgear.core.registry import registered
-from solidgear.exchange.schema.files import DRAFT, text_of
-from solidgear.exchange.schema.sentences import sentences, summary
+from solidgear.core import SolidgearError, nearest, show
+from solidgear.core.registry import needed, registered
 from solidgear.show.printed import Printed
+from solidgear.show.schema.files import DRAFT, text_of
+from solidgear.show.schema.sentences import sentences, summary
 
 Node = dict[str, Any]
 #: JSON has no infinite numbers
@@ -52,13 +52,13 @@ def text_of_command(command: str) -> str:
 
 def schema_of_command(command: str) -> Node:
     """Return the schema of what a command prints with ``--json``."""
-    printed = addition("printed", command)
-    if printed is None:
-        commands = registered("printed")
+    commands = registered("printed")
+    if command not in commands:
         raise SolidgearError(
             f"no command {show(command, 40)} prints JSON{nearest(command, commands)}; "
             f"those that do are {', '.join(sorted(commands))}"
         )
+    printed = needed("printed", command, command)
     title = f"solidgear {command} --json: numbers in SI"
     return {"$schema": DRAFT, "title": title, **of(printed)}
 

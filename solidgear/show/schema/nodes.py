@@ -19,7 +19,7 @@ from solidgear.core import Range, Written
 from solidgear.core.scene.typed import Model
 from solidgear.core.scene.units import DIMENSIONS
 from solidgear.core.scene.written import Kinds, Measure, Three, Word
-from solidgear.exchange.schema.units import number_of, text_of, words_on_unit
+from solidgear.show.schema.units import number_of, text_of, words_on_unit
 
 Node = dict[str, Any]
 #: makes the schema of a table of a model, and of a table of several kinds

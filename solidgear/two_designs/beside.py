@@ -14,16 +14,15 @@ from typing import Any, ClassVar, Generic, TypeVar
 
 import numpy as np
 
-from solidgear.comparison.two.differences import Difference
-from solidgear.core import COMPLIANCE, BarredMode, ByName, Quantity, Sheeted
+from solidgear.core import COMPLIANCE, BarredMode, ByName, Quantity, Sheeted, environment
 from solidgear.core.judge.change import Change, ModePair, Side
-from solidgear.core.machine.environment import environment
 from solidgear.core.plain import plain
 from solidgear.show.command import caution
 from solidgear.show.sheet import Section, Sheet, Terminal, write_folder
 from solidgear.show.table import WORD, Cell, Column, Table, text
 from solidgear.show.units import ENGINEERING, Units, in_ascii, units_named
 from solidgear.show.words import hertz, percent, seconds
+from solidgear.two_designs.differences import Difference
 
 #: entries of the input that are named in a sentence, and letters of each
 NAMED, WIDTH = 3, 30

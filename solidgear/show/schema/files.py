@@ -11,8 +11,8 @@ from solidgear.core import SolidgearError, nearest, show
 from solidgear.core.registry import added
 from solidgear.core.scene.file import SceneFile
 from solidgear.core.scene.toml_file import describes_train
-from solidgear.exchange.schema.nodes import Node, also, either
-from solidgear.exchange.schema.tables import of_model
+from solidgear.show.schema.nodes import Node, also, either
+from solidgear.show.schema.tables import of_model
 
 DRAFT = "http://json-schema.org/draft-07/schema#"
 #: kinds of files, and what they hold

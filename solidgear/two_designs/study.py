@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable
 from pathlib import Path
 
-from solidgear.comparison.two.differences import differences
-from solidgear.comparison.two.two_shafts import TwoShafts, two_shafts
-from solidgear.comparison.two.two_trains import TwoTrains, two_trains
 from solidgear.core import Scene, SolidgearError, Source, is_train, load, name_of_source
 from solidgear.trains.assembly.shaft import checked_model
 from solidgear.trains.file.train import Train
 from solidgear.trains.options import Models, Reduced, models_of
+from solidgear.two_designs.differences import differences
+from solidgear.two_designs.two_shafts import TwoShafts, two_shafts
+from solidgear.two_designs.two_trains import TwoTrains, two_trains
 
 
 def beside(

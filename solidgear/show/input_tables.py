@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import Any
 
-from solidgear.bearings.words import catalogue, load_row, speed_row, without_column
 from solidgear.core import Quantity, Record
+from solidgear.show.bearing_words import catalogue, load_row, speed_row, without_column
 from solidgear.show.matrices import entry
-from solidgear.show.table import Column, Table, given, text, word
+from solidgear.show.table import Cell, Column, Table, given, text, word
 from solidgear.show.units import ENGINEERING, Units
 from solidgear.show.words import DASH, engineering, is_number, short_percent
-from solidgear.trains.page.tables import mark, material_words
 
 #: of a bearing's 6x6
 BEARING_ENTRIES = tuple(map(Quantity, ("K_xx", "K_yy", "K_zz", "K_z,thx", "K_thx", "K_thz")))
@@ -222,3 +222,16 @@ def masses(scene: Mapping, units: Units = ENGINEERING) -> Table:
     ]
     note = "Inertia about the centre of mass; offset of that centre from the station."
     return Table("Rigid masses", columns, scene.get("masses") or [], note)
+
+
+def material_words(material: Mapping[str, Any], units: Units) -> str:
+    """Return a material by its name, where it has one, and its constants."""
+    modulus = f"{units.given(material.get('E'), 'Pa')} {units.unit('Pa')}"
+    density = f"{units.given(material.get('density'), 'kg/m³')} {units.unit('kg/m³')}"
+    words = f"E = {modulus}, nu = {material.get('nu', DASH)}, density = {density}"
+    return f"{material['name']}: {words}" if material.get("name") else words
+
+
+def mark(status: str) -> Cell:
+    """Return the status of an input, in its colour."""
+    return Cell(status, f"mark {status}".rstrip())

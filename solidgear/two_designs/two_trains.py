@@ -14,11 +14,6 @@ from typing import Any, ClassVar, NamedTuple
 
 import numpy as np
 
-from solidgear.comparison.two import at_rest, beside
-from solidgear.comparison.two.at_rest import misalignment_changes
-from solidgear.comparison.two.beside import Beside, decibels
-from solidgear.comparison.two.differences import Difference
-from solidgear.comparison.two.shares import Bar, shares_chart, shares_table
 from solidgear.core import LADDER, SolidgearError, listed, pinned
 from solidgear.core.judge.change import Side
 from solidgear.core.plain import plain
@@ -53,6 +48,11 @@ from solidgear.trains.page.chart import columns_chart, response_chart
 from solidgear.trains.page.files import over_frequency
 from solidgear.trains.response.respond import respond
 from solidgear.trains.response.response import Peak, TrainResponse
+from solidgear.two_designs import at_rest, beside
+from solidgear.two_designs.at_rest import misalignment_changes
+from solidgear.two_designs.beside import Beside, decibels
+from solidgear.two_designs.differences import Difference
+from solidgear.two_designs.shares import Bar, shares_chart, shares_table
 
 #: column of the force of the mesh that drives
 FORCE = "mesh force [N]"

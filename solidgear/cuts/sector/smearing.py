@@ -14,6 +14,7 @@ from typing import TYPE_CHECKING, Any
 from solidgear.core import LADDER, Outline
 from solidgear.core.scene.closed_form import mass_properties
 from solidgear.core.scene.shaft import feature_labels
+from solidgear.cuts.sector.teeth import lacking
 from solidgear.guards.notice import Notice, Notices, everything
 
 if TYPE_CHECKING:
@@ -31,8 +32,6 @@ def _smeared(scene: Scene) -> list[Any]:
 
 def _lacking(scene: Scene) -> tuple[float, float]:
     """Return mass (kg) and polar inertia (kg m^2) that cones lack of all smeared teeth."""
-    from solidgear.cuts.sector.teeth import lacking  # start-up: most shafts have no such teeth
-
     by_name = {s.name: s for s in scene.segments}
     parts = [lacking(f, by_name[f.segment]) for f in _smeared(scene)]
     return sum(mass for mass, _ in parts), sum(polar for _, polar in parts)

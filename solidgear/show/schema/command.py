@@ -9,8 +9,8 @@ import typer
 
 from solidgear.core import SolidgearError
 from solidgear.core.machine.whole_file import write_files
-from solidgear.exchange.schema.files import KINDS, path_of
 from solidgear.show.command import command
+from solidgear.show.schema.files import KINDS, path_of
 
 
 @command
@@ -34,7 +34,7 @@ def schema(
         typer.echo(str(path))
         return
     if json_of:
-        from solidgear.exchange.schema.results import text_of_command  # start-up: of this option
+        from solidgear.show.schema.results import text_of_command  # start-up: of this option
 
         text = text_of_command(json_of)
     else:

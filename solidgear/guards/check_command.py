@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from solidgear.guards.check_study import check as checked
 from solidgear.show.command import command
 from solidgear.show.options import CaseName, Fixed, Run, SceneFile, options
 from solidgear.show.sheet import present
-from solidgear.trains.judge.check_study import check as checked
 
 
 @command

@@ -15,10 +15,6 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 import numpy as np
 
-from solidgear.comparison.two import beside
-from solidgear.comparison.two.beside import Beside, NumberChange
-from solidgear.comparison.two.differences import Difference, scene_differences
-from solidgear.comparison.two.loaded import BY, loaded_changes
 from solidgear.core import (
     LADDER,
     QUANTITIES,
@@ -47,6 +43,10 @@ from solidgear.show.table import WORD, Cell, Column, Table, in_units, text, word
 from solidgear.show.units import ENGINEERING, Units, plain_unit
 from solidgear.show.words import hertz, is_number, percent
 from solidgear.trains.page.chart import PAIR
+from solidgear.two_designs import beside
+from solidgear.two_designs.beside import Beside, NumberChange
+from solidgear.two_designs.differences import Difference, scene_differences
+from solidgear.two_designs.loaded import BY, loaded_changes
 from solidgear.variants.budget.budget import beside as open_numbers
 
 if TYPE_CHECKING:
@@ -94,7 +94,7 @@ class TwoShafts(Beside[OneShaft, BarredMode]):
         How modes are paired, in words.
     """
 
-    shown: ClassVar[str] = "comparison.two.two_shafts:summary"
+    shown: ClassVar[str] = "two_designs.two_shafts:summary"
     kind: ClassVar[str] = "two shafts"
 
     tolerance: float  #: relative, that every error bar was brought to
