@@ -23,10 +23,9 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from solidgear.core.solve.groups import BESIDE
 from solidgear.core.solve.neighbours import best_assignment
 
-#: gap between eigenvalues, relative to the upper one, below which modes are near each other
-BESIDE = 0.05
 #: gap that is solved on for: a bar is no wider than three times what the energy says
 ROOM = 1 / 3
 

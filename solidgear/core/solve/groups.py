@@ -8,6 +8,7 @@ wanted: by a closed form that no family undercuts and that grows with n, then by
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -29,6 +30,8 @@ MOST_WAVES = 100
 CLEAR = 1.01
 #: shapes that a group searches on by, for room above a list, and that are searched at most
 FARTHER, MOST_SHAPES = 4, 160
+#: gap between eigenvalues, relative to the upper one, below which modes are near each other
+BESIDE = 0.05
 # Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound
 # than a hundred times that, signs may turn.
 DOUBT = 0.01
@@ -76,16 +79,40 @@ class Part:
 
     def has_room(self, limit: float, room: float) -> bool:
         """Return whether the first eigenvalue above a limit, rad^2/s^2, has another one so far above
-        it, relative, or no more are worth a search.
+        it, relative, or no more are worth a search: too many, or too close (:func:`is_dense`).
         """
-        above = [r.value for r in self.solved.elastic if r.value > CLEAR * limit]
+        values = [r.value for r in self.solved.elastic]
+        place = sum(value <= CLEAR * limit for value in values)
         if not room or self.ask + FARTHER > min(MOST_SHAPES, self.supported.size // 2):
             return True
-        return bool(above) and 1 - above[0] / above[-1] >= room
+        if place == len(values):
+            return False
+        return 1 - values[place] / values[-1] >= room or is_dense(values, place, room)
 
     def values(self) -> list[float]:
         """Return elastic eigenvalues with every shape counted, rad^2/s^2."""
         return [r.value for r in self.solved.elastic for _ in range(self.copies)]
+
+
+def is_dense(values: Sequence[float], place: int, room: float) -> bool:
+    """Return whether the eigenvalues above one of a list, which ascends with every shape counted, lie
+    so close that none among the lowest `MOST_SHAPES` will leave it `room`, relative to the higher one.
+
+    A thin layer that is held on both sides has hundreds of modes within some per cent. A run of a
+    width below `BESIDE` may be of a few equal parts of a body, and end at any place; and of modes in
+    three dimensions a mode has less than twice as many (1.5^(3/2)) below it at a room of a third.
+
+    Examples
+    --------
+    >>> layer = [1 + 0.002 * k for k in range(40)]
+    >>> is_dense(layer, 3, 1 / 3), is_dense([*layer, 3.0], 3, 1 / 3), is_dense(layer[:9], 3, 1 / 3)
+    (True, False, False)
+    """
+    gap = 1 - values[place] / values[-1]
+    if not BESIDE <= gap < room:
+        return False
+    expected = place + (len(values) - place) * room / gap
+    return expected > max(MOST_SHAPES, 2 * place)
 
 
 @dataclass(frozen=True)
