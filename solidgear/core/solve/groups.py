@@ -28,7 +28,7 @@ LIGHT = 1.5
 MOST_WAVES = 100
 #: eigenvalues above this many times a limit are clear of it
 CLEAR = 1.01
-#: shapes that a group searches on by, for room above a list, and that are searched at most
+#: shapes that a group searches on by, at least, for room above a list, and that are searched at most
 FARTHER, MOST_SHAPES = 4, 160
 #: gap between eigenvalues, relative to the upper one, below which modes are near each other
 BESIDE = 0.05
@@ -83,11 +83,19 @@ class Part:
         """
         values = [r.value for r in self.solved.elastic]
         place = sum(value <= CLEAR * limit for value in values)
-        if not room or self.ask + FARTHER > min(MOST_SHAPES, self.supported.size // 2):
+        if not room or self.ask >= self._most:
             return True
         if place == len(values):
             return False
         return 1 - values[place] / values[-1] >= room or is_dense(values, place, room)
+
+    def ask_on(self) -> None:
+        """Ask for half as many modes again, of those that are worth a search."""
+        self.ask = min(self.ask + max(FARTHER, self.ask // 2), self._most)
+
+    @property
+    def _most(self) -> int:
+        return min(MOST_SHAPES, self.supported.size // 2)
 
     def values(self) -> list[float]:
         """Return elastic eigenvalues with every shape counted, rad^2/s^2."""
@@ -152,7 +160,7 @@ def solved_parts(
             if part.ask < n and part.solved.elastic and not part.reaches(reach):
                 part.ask = min(2 * part.ask, n)
             elif not part.has_room(reach, room):
-                part.ask += FARTHER
+                part.ask_on()
             else:
                 continue
             waiting.append(part)
@@ -242,7 +250,7 @@ def further_parts(
             if not part.reaches(limit) and part.ask <= n // 2 + 1:
                 part.ask = min(2 * part.ask, n // 2 + 2)
             elif not part.has_room(limit, room):
-                part.ask += FARTHER
+                part.ask_on()
             else:
                 break
         further.append(part)
