@@ -40,8 +40,9 @@ if TYPE_CHECKING:
 
 #: why a mode has no error bar
 NOTHING_BEYOND = (
-    "an error bar needs a mode beyond those side by side with it that the mesh resolves, and the "
-    f"lowest {MOST_SHAPES} shapes hold none; without one a frequency is an upper end"
+    "an error bar needs a mode beyond those side by side with it that the mesh resolves, and none was "
+    f"found among the lowest {MOST_SHAPES} shapes, or modes lie too dense for one there; without a bar "
+    "a frequency is an upper end"
 )
 #: shapes above a list of modes that are looked at for its bars
 ABOVE = 12
