@@ -90,8 +90,8 @@ class Part:
         return 1 - values[place] / values[-1] >= room or is_dense(values, place, room)
 
     def ask_on(self) -> None:
-        """Ask for half as many modes again, of those that are worth a search."""
-        self.ask = min(self.ask + max(FARTHER, self.ask // 2), self._most)
+        """Ask for as many modes again, of those that are worth a search."""
+        self.ask = min(self.ask + max(FARTHER, self.ask), self._most)
 
     @property
     def _most(self) -> int:
@@ -116,10 +116,10 @@ def is_dense(values: Sequence[float], place: int, room: float) -> bool:
     >>> is_dense(layer, 3, 1 / 3), is_dense([*layer, 3.0], 3, 1 / 3), is_dense(layer[:9], 3, 1 / 3)
     (True, False, False)
     """
-    gap = 1 - values[place] / values[-1]
-    if not BESIDE <= gap < room:
+    start, end = values[place], values[-1]
+    if not BESIDE <= 1 - start / end < room:
         return False
-    expected = place + (len(values) - place) * room / gap
+    expected = place + (len(values) - place) * (start / (1 - room) - start) / (end - start)
     return expected > max(MOST_SHAPES, 2 * place)
 
 
