@@ -196,6 +196,18 @@ def test_speed_presses_the_outer_ring_and_flattens_its_angle():
         assert 14 * balls.load[0] * np.sin(balls.angle[0]) == pytest.approx(2e3, rel=1e-9)
 
 
+def test_inertia_holds_no_ring_that_is_pushed_out_of_its_groove():
+    """A groove with a contact angle has one shoulder, at speed too: moved the other way by half a
+    millimetre, as trial steps of a search move it, the ring meets nothing along y.
+    """
+    row = single(1, 0.0)
+    fast = SpinningBalls(row, 1500.0)
+    for motion in ([0, -5e-4, 0, 0, 0, 0], [4e-4, -5e-4, 0, 0, 0, 0], [3e-3, 0, 0, 1e-3, 0, 0]):
+        load, still = (part.load(np.array(motion, float)) for part in (fast, row))
+        assert load[1] >= 0 and np.allclose(load, still, rtol=0.05, atol=20.0)
+        assert np.all(np.isfinite(fast.tangent(np.array(motion, float))))
+
+
 def test_needle_of_the_reducer():
     # INA BK0810: 8 x 12 x 10 mm; nothing along y, its stiffness by its load
     data = Catalogue(designation="BK0810", load={"z": "300 N"})

@@ -206,6 +206,9 @@ def test_bad_options_end_in_one_sentence(args, sentence):
 def test_a_pair_that_is_pushed_apart_is_told(tmp_path):
     path = tmp_path / "loose.toml"
     text = open(SCENE).read().partition("[uncertain]")[0]  # a preload that is none has no range
+    text = text.replace(
+        'speed = "1500 rpm"', ""
+    )  # at speed inertia keeps its balls between the rings
     path.write_text(text.replace('preload = "400 N"', 'load = {y = "2 kN"}'))
     done = command("bearing", path, "--bearing", "B")
     assert "the row at the upper end of y carries nothing" in " ".join(done.output.split())

@@ -22,13 +22,13 @@ from solidgear.core.bounds.harmonic import (
     richer_space,
     with_tail,
 )
-from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.bounded import bounded
 from solidgear.core.judge.quantities import measure, size
 from solidgear.core.judge.solving import Statics, search_modes
 from solidgear.core.meshing.meridian import CUT_RATIO
 from solidgear.core.quantity import Quantity
+from solidgear.core.safety import LOCAL
 from solidgear.core.scene import STEEL, Fillet, Housing, Material
 from solidgear.core.scene.coned import coned
 from solidgear.core.solve.modes import Mode

@@ -51,11 +51,17 @@ def shaft(spline, tie="average"):
     return sg.Scene.from_parts(segments, STEEL, bearings, port, features=(spline,))
 
 
+def on_end(scene):
+    """The shaft with its second bearing on its end face."""
+    first, second = scene.bearings
+    return scene.with_changes(bearings=(first, second.with_changes(face="end", y=scene.length)))
+
+
 PARTS = {
     "straight": shaft(STRAIGHT),
     "spiral": shaft(SPIRAL),
     # ports feel waves of one period around at most, which four sectors have as five do
-    "rigid": shaft(STRAIGHT.with_changes(count=4, dedendum=0.4), "rigid"),
+    "rigid": on_end(shaft(STRAIGHT.with_changes(count=4, dedendum=0.4), "rigid")),
 }
 
 

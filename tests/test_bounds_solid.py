@@ -13,7 +13,6 @@ import solidgear as sg
 from solidgear import STEEL, Bearing, Material, Port, Scene, Segment
 from solidgear.core.body import as_supports
 from solidgear.core.bounds import solid as bounds_solid
-from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.bounds.solid import _converged, _Search, enriched_errors, solid_bounds
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.bounded import _between, bounded
@@ -23,7 +22,9 @@ from solidgear.core.kernel.assembly import reference
 from solidgear.core.models.solid.enriched import Further
 from solidgear.core.models.solid.mesh import basis_of
 from solidgear.core.quantity import Quantity
+from solidgear.core.safety import LOCAL
 from solidgear.core.solve.factor import factorise
+from tests.test_holds import ON_FACE, on_face
 
 ELEMENTS = ("tet4", "tet10", "hex8", "hex20", "hex27")
 NAMES = [Quantity(name) for name in ("C_zz", "C_thx", "C_yy", "bending 1", "axial 1", "torsion 1")]
@@ -214,6 +215,15 @@ def test_bars_hold_at_rigid_seats():
     found = judged(stepped("rigid"), "tet10", **COARSE["tet10"])
     _, one_side = over_error(found, truth("rigid"))
     assert np.all(one_side > 1) and np.median(one_side) < 2.5
+
+
+@pytest.mark.parametrize(("element", "refinement"), [("tet10", 0.7), ("hex20", 0.6)])
+def test_bars_hold_on_a_clamped_face(element, refinement):
+    """Its rim is as sharp as Williams says of a held face at right angles to a free one."""
+    right = {Quantity(name): value for name, value in ON_FACE[0.0].items()}
+    found = judged(on_face(), element, tuple(right), refinement=refinement)
+    _, one_side = over_error(found, right)
+    assert np.all(one_side > 1) and np.all(one_side < 2.5)
 
 
 def test_the_truth_lies_beyond_the_least_growth():

@@ -15,7 +15,6 @@ RIM = FOUND / "teeth/rim_1.4m/t.toml"
 BEAMS = ("--pinion", "timoshenko", "--gear", "timoshenko")
 ON_SEAT = "where exactly the seat end of B at a change of material lies"
 AT_SPEED = "at 12000 rpm spin moves bending 1 by -27 %"
-ON_FACE = "A holds the mean motion of the start face, which is free to dish"
 
 
 def said_by(run, tmp_path, *words):
@@ -67,23 +66,6 @@ def test_teeth_on_a_thin_rim_are_said_wherever_their_stiffness_counts(words, run
     assert said_by(run, tmp_path, command, RIM, *options).count(rim) == 1
 
 
-def test_a_face_that_is_held_dishes_in_solids_alone():
-    bar = {
-        "material": "steel",
-        "segment": [{"kind": "cylinder", "name": "bar", "length": "100 mm", "diameter": "100 mm"}],
-        "bearing": [{"name": "A", "face": "start", "seat_width": "20 mm", "hold": "clamped"}],
-        "port": {"name": "tip", "position": "90 mm", "span": ["80 mm", "100 mm"]},
-    }
-    scene = sg.load(bar)
-    solid, beam = (sg.modes(sg.build(scene, model), scene, n=2) for model in ("harmonic", "euler"))
-    assert [text for text in solid.cautions if ON_FACE in text] and not beam.cautions
-    assert any(ON_FACE in text for text in sg.check(scene).cautions)
-    springs = {"kxx": 1e9, "kyy": 1e9, "kzz": 1e9, "kthx": 1e6, "kthy": 1e6, "kthz": 1e6}
-    bar["bearing"] = [{**bar["bearing"][0], "stiffness": springs}]
-    del bar["bearing"][0]["hold"]
-    assert not any(ON_FACE in text for text in sg.answer(bar, 0.05, "C_zz").cautions)
-
-
 def test_modes_and_their_page_say_what_spin_does():
     scene = sg.load(DISC)
     beam = sg.build(scene, "timoshenko")
@@ -109,3 +91,21 @@ def test_a_command_that_is_silent_is_found():
     # frequencies are no concern of static numbers
     moving = Printed(0, {"cautions": ["natural frequencies are those at rest"]}, "", "")
     assert not failed(cautions.alike("shaft", {"modes": moving, "deflect": silent}))
+
+
+def test_a_sweep_says_what_any_of_its_rows_has_and_which():
+    """Spin moves no frequency at 60 rpm: the first row has no caution, the others have."""
+    vary = "lubrication.speed=60 rpm,6000 rpm,12000 rpm"
+    swept = sg.sweep(DISC, vary, model="timoshenko", n=2)
+    first, slow, fast = swept["cautions"]
+    assert first is None and "at 6000 rpm" in slow and AT_SPEED in fast
+    (said,) = swept.cautions
+    assert said == f"{slow} (variant 1; alike in 2 of 3 rows, column cautions)"
+
+
+def test_an_optimum_says_what_its_best_design_has():
+    vary, goal = "segment.shaft.diameter=38 mm,40 mm", "max bending 1"
+    still = sg.load(DISC).with_changes(lubrication=None)
+    assert not sg.optimise(still, vary, goal, model="timoshenko").cautions
+    (said,) = sg.optimise(DISC, vary, goal, model="timoshenko").cautions
+    assert "at 12000 rpm spin moves bending 1 by" in said

@@ -12,13 +12,14 @@ import scipy.linalg as sla
 
 import solidgear as sg
 from solidgear.core.body import as_supports
-from solidgear.core.bounds.clusters import ROOM, lower_ends
+from solidgear.core.bounds.clusters import lower_ends
 from solidgear.core.judge import bounded
 from solidgear.core.judge import settle as settling
 from solidgear.core.judge.bounded import NOTHING_BEYOND, mode_bars
 from solidgear.core.judge.hidden import COMPLETE, complete_list
 from solidgear.core.judge.settle import settle
 from solidgear.core.quantity import Quantity
+from solidgear.core.safety import ROOM
 from solidgear.core.scene import Bearing, Port, Scene
 from solidgear.core.solve import groups
 from tests.shafts import shaft

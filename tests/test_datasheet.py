@@ -14,17 +14,30 @@ from made_up_sheet import made_up_shaft, made_up_sheet
 import solidgear as sg
 from solidgear.datasheet import command as command_module
 from solidgear.datasheet import page
-from solidgear.datasheet.at_rest import cautions_of_notch
+from solidgear.datasheet.at_rest import cautions_of_notch, motions
 from solidgear.datasheet.browser import PROGRAMS, browser, pages_of
 from solidgear.datasheet.drawing import WIDE, shaft_svg
-from solidgear.datasheet.facts import DrawnShaft, Force, Frequency, Remark, Trust, UnratedCorner
+from solidgear.datasheet.facts import (
+    DrawnShaft,
+    Force,
+    Frequency,
+    MotionFact,
+    Remark,
+    Trust,
+    UnratedCorner,
+)
 from solidgear.datasheet.language import Language
 from solidgear.datasheet.messages import LANGUAGES, MESSAGES
 from solidgear.datasheet.sections import sections, tiles
 from solidgear.datasheet.shaft import resonances
+from solidgear.datasheet.train import MODES, train_sheet
 from solidgear.show.sketch import SEAT, SPAN
 from solidgear.show.units import ENGINEERING
+from solidgear.strength.deflection.at_rest import deflect
+from solidgear.strength.stress.at_rest import StressSettings
+from solidgear.trains.assembly.assembly import Assembly
 
+GEARBOX = Path(__file__).parent.parent / "geometry" / "gearbox_train.toml"
 PACKAGE = Path(__file__).parent.parent / "solidgear" / "datasheet"
 E, DIAMETER, LENGTH, PLACE = 206e9, 0.03, 0.5, 0.2
 FORCE, TORQUE = (300.0, 400.0), 40.0
@@ -389,3 +402,38 @@ def test_the_german_page_of_a_shaft_names_its_sharp_corner():
     words = Language("de", ENGINEERING)
     assert [corner.y for corner in found.corners] == pytest.approx([0.1])
     assert "Kante bei 100 mm" in next(tiles(found, words)).place
+
+
+def test_frequencies_of_a_train_are_those_of_its_list_of_modes():
+    """To all digits: the modes that a page leaves out decide the meshes as well."""
+    train = sg.load_train(GEARBOX)
+    page_, listed = train_sheet(train, None, train.point, StressSettings(), print), {}
+    for mode in sg.system_modes(train):
+        listed[mode.name] = mode.frequency_hz
+    assert len(page_.frequencies) == MODES < len(listed)
+    assert {f.mode: f.hz for f in page_.frequencies}.items() <= listed.items()
+
+
+def test_a_motion_inside_its_bar_is_zero_with_the_bar_in_its_unit():
+    """What symmetry forbids is left by the mesh: no share of it says anything."""
+    words = Language("en", ENGINEERING)
+    assert words.measured(2e-6, "m moved", 0.1) == ("2.000 µm", "± 10.0 %")
+    zero, bar = words.measured(-2e-12, "m moved", 3.0)
+    assert (float(zero.split()[0]), float(bar.split()[1])) == pytest.approx((0.0, 8e-6))
+    motion = MotionFact("gear", 1e-12, 2e-9, 1e-4, 1e-6)
+    page_ = made_up_sheet(motions=(motion,)).to_html()
+    assert "&gt; 100 %" not in page_ and "± 0.002" in page_
+
+
+def test_a_motion_that_is_rounding_is_zero():
+    """Along y nothing loads the shaft; 1e-9 um with an error bar of a per cent would be a number."""
+    scene = sg.load("geometry/shaft_stepped.toml").with_changes(load={"z": 1e3})
+    motion, *_ = motions(deflect(Assembly.of(scene), models=["timoshenko"]))
+    assert motion.axial == 0.0 < motion.radial
+
+
+def test_a_train_whose_shafts_have_no_error_bars_in_modes_says_so():
+    cut = Trust("corrected", 0.02, True, None, None)
+    shown = made_up_sheet(train=True, trust=cut, frequencies=(Frequency("bending 1", 500.0, None),))
+    assert "What the meshes leave is not known" in shown.to_html()
+    assert "What the meshes leave" not in made_up_sheet().to_html()

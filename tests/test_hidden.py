@@ -8,11 +8,11 @@ import pytest
 import solidgear as sg
 from solidgear.core.body import as_supports
 from solidgear.core.bounds import harmonic
-from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.judge import study
 from solidgear.core.judge.bounded import mode_bars
 from solidgear.core.judge.completeness import completeness
 from solidgear.core.judge.hidden import COMPLETE, COUNTED, complete_list, less_bars
+from solidgear.core.safety import ROOM
 from solidgear.core.scene import Bearing, Material, Scene
 from solidgear.core.solve.modes import Mode
 from tests.shafts import shaft

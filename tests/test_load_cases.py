@@ -114,6 +114,33 @@ def test_commands_say_which_case_counts(words, file, monkeypatch, no_charts):
         assert 'load case "light", one of 2' in " ".join(chosen.stdout.split())
 
 
+def test_balls_turn_at_the_speed_of_the_case(file):
+    """Their inertia is that of the case where it has a speed, else of the file: 20,000 rpm of a case
+    loosen the pair by a quarter, with the same loads as 20,000 rpm of its data.
+    """
+    still = as_written(file).with_changes(lubrication=None)
+    light, full = (case.with_changes(speed="20000 rpm") for case in still.cases)
+    fast = still.with_changes(cases=(light, full))
+    a, b = still.bearings
+    stated = still.with_changes(
+        bearings=(a, b.with_changes(catalogue=b.catalogue.with_changes(speed="20000 rpm")))
+    )
+
+    def pair(scene):
+        return scene.settled.bearings[1].stiffness
+
+    assert pair(fast)[2, 2] < 0.8 * pair(still)[2, 2]
+    assert pair(fast) == pytest.approx(pair(stated), rel=1e-6, abs=1e3)
+    loads = [
+        {b.name: b.load for b in sg.deflect(scene, "timoshenko").judge.shafts[0].bearings}
+        for scene in (fast, stated)
+    ]
+    assert loads[0]["B"] == pytest.approx(loads[1]["B"], rel=1e-6, abs=1e-3)
+    # the loads at rest choose the mesh of one, those at speed that of the other
+    facts = [sg.bearing(still, speed="20000 rpm")["B"], sg.bearing(fast)["B"]]
+    assert facts[0].stiffness == pytest.approx(facts[1].stiffness, rel=2e-3, abs=1e3)
+
+
 def test_a_case_is_no_choice_where_nothing_settles_under_it(file):
     scene = as_written(file)
     assert case_sentence(scene).startswith("catalogue bearings settle")

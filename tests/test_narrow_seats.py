@@ -6,10 +6,12 @@ import pytest
 
 import solidgear as sg
 from solidgear import Bearing, Port, Scene, Segment
-from solidgear.core.bounds.narrow import AVERAGED, RIGID, narrow_share, share_of, share_of_gap
-from solidgear.core.bounds.safety import LOCAL, SLOWER
+from solidgear.core.bounds.narrow import narrow_share, share_of, share_of_gap
 from solidgear.core.bounds.solid import solid_bounds
+from solidgear.core.safety import LOCAL, SLOWER
 
+#: exponents at the ends of seats on a smooth surface
+AVERAGED, RIGID = 1.0, 1 / 2
 COARSE = {"element": "tet10", "refinement": 0.2}
 
 
@@ -71,6 +73,20 @@ def test_the_gap_between_two_rigid_seats_counts_as_a_seat():
     # two loads on average beside each other leave nothing held between them
     scene = bar(12.0, beside=0.05)
     assert narrow_share(scene, sg.build(scene, "solid", **COARSE), 2) < 2.5
+
+
+def test_a_rigid_seat_that_ends_at_a_shoulder_is_sharper_than_one_on_a_smooth_surface():
+    """Displacement goes with the root of the distance in a smooth surface, with the cube root where the
+    seat meets the face of a shoulder, so that one order more finds less of the error."""
+    thick = Segment.cylinder("thick", y0=0.04, length=0.05, diameter=0.05)
+    thin = Segment.cylinder("thin", length=0.04, diameter=0.03)
+    shares = []
+    for lo, hi in ((0.028, 0.04), (0.02, 0.032)):
+        port = Port(name="gear", y=(lo + hi) / 2, lo=lo, hi=hi, attachment="rigid")
+        scene = Scene.from_parts([thin, thick], port=port)
+        shares.append(narrow_share(scene, sg.build(scene, "solid", **COARSE), 2))
+    sharp, smooth = (1 / (1 - (2 / 3) ** (4 * a)) for a in (1 / 3, 1 / 2))
+    assert shares[0] > 1.1 * shares[1] and shares[0] > sharp and shares[1] > smooth
 
 
 def test_bars_hold_at_a_gap_narrower_than_its_cells():

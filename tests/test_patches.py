@@ -5,8 +5,8 @@ bounds an error, and what it takes for that.
 import numpy as np
 import pytest
 
-from solidgear.core.kernel.lobatto import at_nodes, gauss, lobatto, products
 from solidgear.core.kernel.local_problems import Cell, condensed, energies
+from solidgear.core.meshing.lobatto import at_nodes, gauss, lobatto, products
 
 #: pull of distributed forces per length, N/m, on bars whose stiffness E A is 1 N
 PULLS = (lambda x: 1 - 3 * x, lambda x: 5 * x**3 - x, lambda x: np.sin(7 * x))

@@ -159,12 +159,6 @@ def test_a_clamped_face_is_the_face_however_seats_are_attached(model, tie):
         assert found == pytest.approx(exact, rel=0.01)
 
 
-def test_a_face_attached_as_a_rim_is_refused_in_one_sentence(refused):
-    text = (ROOT / "geometry" / "rotor_disc.toml").read_text()
-    old, new = 'face = "start"  ', 'face = "start"\nattachment = "rigid"  '
-    refused(text, old, new, "for the rim beside the face write position and from")
-
-
 def test_a_heavy_tip_mass_by_closed_form():
     """``sqrt(3 E I / (M + 33/140 m) L^3)``: of Rayleigh, above the truth by far less than 1e-3 for a
     tip 20 times as heavy as the bar (Blevins, table 8-8).

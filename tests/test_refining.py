@@ -15,7 +15,7 @@ import solidgear as sg
 from solidgear.core.bounds.refining import Corners, Meshed, refined
 from solidgear.core.judge.answer import answer
 from solidgear.core.kernel.cell_shapes import Shapes
-from solidgear.core.kernel.lobatto import gauss
+from solidgear.core.meshing.lobatto import gauss
 from solidgear.core.scene import Fillet
 from solidgear.core.scene.closed_form import mass_properties
 from tests.test_bounds import shaft

@@ -1,6 +1,7 @@
 """Derivatives of numbers by entries of a scene file, against shafts built and solved anew."""
 
 import json
+import weakref
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import solidgear as sg
 from solidgear.core.scene.file import scene_of
 from solidgear.core.scene.paths import entry, keys_of, with_entry
 from solidgear.core.scene.toml_file import parse
+from solidgear.variants.sensitivity import run
 from tests.command import command
 
 #: of the strongest elasticity: central differences of fine meshes that are made anew repeat to 3e-6
@@ -260,3 +262,19 @@ def test_numbers_of_a_material_by_name_have_derivatives(tmp_path):
     by_name, by_numbers = (sg.sensitivities(path, **of)["bending 1"] for path in (named, told))
     for path in ("material.E", "material.density"):
         assert by_name[path].by == pytest.approx(by_numbers[path].by, rel=1e-9)
+
+
+def test_one_mesh_is_there_at_a_time(tmp_path, monkeypatch):
+    """The coarser mesh that judges is solved once the fine one is gone: they do not add up."""
+    alive = weakref.WeakSet()
+
+    class Counted(run.SolvedMesh):
+        def __init__(self, *words):
+            assert not alive
+            super().__init__(*words)
+            alive.add(self)
+
+    monkeypatch.setattr(run, "SolvedMesh", Counted)
+    found = sg.sensitivities("geometry/shaft_stepped.toml", "timoshenko", of=["bending 1"])
+    (nu,) = [d for d in found["bending 1"].derivatives if d.path == "material.nu"]
+    assert nu.apart is not None and not nu.unit

@@ -56,6 +56,18 @@ def shaft_bearings(solution):
     return {f"{s.name}.{b.name}": b for s in solution.shafts for b in s.bearings}
 
 
+def test_the_norm_takes_an_even_load_wherever_contact_has_it(box, on_beams):
+    """Its face load factor moves the load along the face by its own formula: of teeth in contact, whose
+    force is 6 mm off, f_sh is that of the force at the middle, but for how bearings stiffen meanwhile.
+    """
+    given = box.with_changes(mesh=box.mesh.with_changes(stiffness=9.5e8))
+    (middle,) = deflection(Assembly(given), box.point, "timoshenko").face_loads
+    (load,) = on_beams.face_loads
+    assert load.skew == pytest.approx(middle.skew, rel=0.02)
+    (resting,) = [m.value for m in on_beams.misalignment if m.name == "f_sh"]
+    assert abs(resting) < 0.9 * abs(load.skew)
+
+
 def test_lives_are_those_of_the_loads_that_deflect_shows(box, deflected):
     """An own calculation of statics with the force 6 mm off the middle of the face, towards B, has
     2528 N at A, where it has 2887 N with the force in the middle. It lets no bearing resist tilting,

@@ -108,6 +108,33 @@ def test_a_shipped_shaft_with_cuts_deflects_as_answer_says():
     assert moved.bar < 1e-3 * moved.value
 
 
+def test_bearing_loads_of_a_shaft_with_a_cut_are_those_that_stress_has():
+    """To all digits, with springs against tilt, whose share follows from the shaft: both begin on the
+    coarsest mesh and go on as error bars ask.
+    """
+    spring = {"kxx": 4e8, "kyy": 2e8, "kzz": 4e8, "kthx": 1e5}
+    shaft = sg.load(
+        {
+            "material": "steel",
+            "segment": [{"kind": "cylinder", "name": "s", "length": 0.12, "diameter": 0.04}],
+            "bearing": [
+                {"name": name, "position": y, "seat_width": 0.012, "stiffness": spring}
+                for name, y in (("A", 0.015), ("B", 0.105))
+            ],
+            "port": {"name": "gear", "position": 0.06, "span": [0.055, 0.065]},
+            "load": {"z": 1e3},
+            "feature": [
+                {"kind": "keyway", "segment": "s", "position": 0.03, "length": 0.02}
+                | {"name": "key", "width": 0.012, "depth": 0.005}
+            ],
+        }
+    )
+    (deflected,) = sg.deflect(shaft, "corrected").judge.shafts
+    (stressed,) = sg.stress(shaft, "corrected").shafts
+    for bearing in deflected.bearings:
+        assert np.array_equal(bearing.load, -stressed.acting.loads[bearing.name])
+
+
 def test_models_asked_for_by_name_do_not_leave_cuts_out():
     with pytest.raises(sg.SolidgearError, match="of revolution"):
         sg.deflect("geometry/pinion_keyed.toml", "timoshenko", load="z=2 kN")

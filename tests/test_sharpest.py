@@ -7,10 +7,9 @@ import pytest
 from scipy.optimize import brentq
 
 from solidgear import Port, Scene, Segment
-from solidgear.core.bounds import wedge
 from solidgear.core.bounds.singular_places import sharpest_exponent
-from solidgear.core.bounds.wedge import wedge_exponent
-from solidgear.core.meshing.corners import corner_exponent
+from solidgear.core.meshing import wedge
+from solidgear.core.meshing.wedge import wedge_exponent
 from solidgear.core.scene import Material
 
 STEEL = Material(E=2.07e11, nu=0.3, density=7850)
@@ -38,12 +37,21 @@ def first_root(f, most=0.9999):
     return brentq(f, grid[change[0]], grid[change[0] + 1]) if len(change) else 1.0
 
 
+def free(angle):
+    """Williams (1952): sin(a w) = +- a sin(w)."""
+    if angle == 2 * math.pi:
+        return 0.5
+    return min(
+        first_root(lambda a, s=sign: np.sin(a * angle) + s * a * np.sin(angle)) for sign in (1, -1)
+    )
+
+
 @pytest.mark.parametrize("degrees", [200, 225, 270, 315, 360])
 def test_one_free_wedge_is_that_of_williams(degrees):
     whole = degrees * DEGREE
     for parts in ([1.0], [0.3, 0.7]):  # cut in two of one material, nothing changes
         found = wedge_exponent([(share * whole, STEEL) for share in parts])
-        assert found == pytest.approx(corner_exponent(whole), abs=1e-6)
+        assert found == pytest.approx(free(whole), abs=1e-6)
 
 
 @pytest.mark.parametrize("material", [STEEL, RUBBER, SOFT])
@@ -91,6 +99,25 @@ def test_of_a_crack_between_two_materials_stress_turns_as_it_grows(pair):
     turn = abs(math.log((1 - beta) / (1 + beta))) / (2 * math.pi)
     assert np.abs(roots - (0.5 + 1j * turn)).min() < 1e-6
     assert wedge_exponent([(math.pi, m) for m in pair]) == pytest.approx(0.5, abs=1e-6)
+
+
+@pytest.mark.parametrize("pair", PAIRS)
+def test_of_four_quarters_in_turn_it_is_that_across_the_plane(pair):
+    """Of two materials like fields of a chessboard tan^2(a pi / 4) is the ratio of the shear moduli."""
+    ratio = min(
+        pair[0].shear_modulus / pair[1].shear_modulus, pair[1].shear_modulus / pair[0].shear_modulus
+    )
+    expected = 4 / math.pi * math.atan(math.sqrt(ratio))
+    found = wedge_exponent([(math.pi / 2, m) for m in (*pair, *pair)], closed=True)
+    assert found == pytest.approx(expected, rel=1e-6)
+
+
+def test_around_an_edge_inside_one_material_nothing_is_singular():
+    parts = [(math.pi / 2, STEEL), (1.5 * math.pi, STEEL)]
+    assert wedge_exponent(parts, closed=True) == pytest.approx(1.0, abs=1e-6)
+    # and a soft corner hardly holds the notch that is filled with it
+    filled = wedge_exponent([(math.pi / 2, SOFT), (1.5 * math.pi, STEEL)], closed=True)
+    assert filled == pytest.approx(free(1.5 * math.pi), abs=1e-3)
 
 
 def test_across_the_plane_two_wedges_follow_their_shear_moduli():
@@ -148,7 +175,7 @@ BODIES = {
     "seat over a whole disc": (
         [(50, 20, STEEL), (10, 80, STEEL), (50, 20, STEEL)],
         (50, 60),
-        corner_exponent(1.5 * HALF),  # its own ends are less sharp
+        free(1.5 * HALF),  # its own ends are less sharp
     ),
     "seat to a joint": (
         [(50, 20, STEEL), (50, 20, RUBBER)],

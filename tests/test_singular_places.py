@@ -14,15 +14,16 @@ import pytest
 
 import solidgear as sg
 from solidgear.core.bounds.harmonic import richer_space
-from solidgear.core.bounds.meeting import least_side
 from solidgear.core.bounds.refining import Corners, Meshed
-from solidgear.core.bounds.richer_space import LAYERS
 from solidgear.core.bounds.singular_places import sharpest_exponent, singular_places
 from solidgear.core.bounds.solid import share_of_error
-from solidgear.core.bounds.wedge import wedge_exponent
+from solidgear.core.meshing.meeting import least_side
 from solidgear.core.meshing.meridian import CUT_RATIO
+from solidgear.core.meshing.wedge import wedge_exponent
+from solidgear.core.safety import LAYERS
 from solidgear.core.scene import Chamfer, Fillet, Material, Port, Scene, Segment
 from tests.command import command
+from tests.test_holds import on_face
 from validation.campaign.cases.answers import ask, excluding, scene_of
 
 SHAFTS = Path(__file__).parent / "found" / "shafts"
@@ -55,6 +56,34 @@ def test_a_soft_wedge_between_a_rigid_face_and_a_hard_one(soft):
     expected = 2 / math.pi * math.atan(math.sqrt(soft.shear_modulus / STEEL.shear_modulus))
     found = wedge_exponent([(QUARTER, soft), (QUARTER, STEEL)], held=1)
     assert found == pytest.approx(expected, rel=1e-6)
+
+
+@pytest.mark.parametrize("face", ["start", "end"])
+def test_the_rims_of_a_held_face_are_held_on_one_side(face):
+    tube = Segment.cylinder("tube", length=0.1, diameter=0.06, bore=0.03, material=STEEL)
+    wall = sg.Bearing(name="wall", face=face, seat_width=0.01, hold="clamped")
+    scene = Scene.from_parts([tube], STEEL, [wall], Port(y=0.05, lo=0.04, hi=0.06))
+    rims = [place for place in singular_places(scene) if "held face of wall" in place.what]
+    assert [place.r for place in rims] == [0.03, 0.015]
+    expected = wedge_exponent([(QUARTER, STEEL)], held=1)  # 0.71, of Williams' equation
+    assert [place.exponent for place in rims] == pytest.approx([expected] * 2)
+    mean = scene.with_attachment("average")  # free of shear and of stress along the rim
+    assert sharpest_exponent(mean) == 1.0
+
+
+@pytest.mark.parametrize(
+    ("blend", "angle"),
+    [(Fillet(name="c", y=0, radius=5e-3), 180), (Chamfer(name="c", y=0, length=5e-3), 135)],
+)
+def test_the_rim_of_a_held_face_lies_where_a_blend_begins(blend, angle):
+    """Coarser meshes, and cells cut towards the wrong ring, left out more than their bars."""
+    scene = on_face().with_changes(blends=(blend,))
+    (rim,) = (place for place in singular_places(scene) if "held face" in place.what)
+    assert rim.r == pytest.approx(0.045)
+    expected = wedge_exponent([(math.radians(angle), scene.segments[0].material)], held=1)
+    assert rim.exponent == pytest.approx(expected, abs=1e-9)
+    answers = {tol: ask(scene, tol) for tol in (1e-2, 1e-3)}
+    assert not excluding(scene.name, answers)
 
 
 @pytest.mark.parametrize("degrees", [200, 270, 340])
@@ -181,7 +210,9 @@ def test_a_3d_solid_knows_the_same_corner():
     body = sg.build(scene, "solid", layers=0, around=8)
     exponent = sharpest_exponent(scene)
     assert exponent == pytest.approx(0.0597, abs=1e-4)
-    assert share_of_error(scene, body) == pytest.approx(1 / (1 - (2 / 3) ** (4 * exponent)))
+    # of seats narrower than their cells a little more
+    theory = 1 / (1 - (2 / 3) ** (4 * exponent))
+    assert theory <= share_of_error(scene, body) < 1.3 * theory
 
 
 @pytest.mark.slow

@@ -240,3 +240,13 @@ def test_a_sweep_says_at_which_load_catalogue_bearings_are_taken(tmp_path):
 def test_an_entry_that_catalogue_data_stand_for_is_refused_with_what_to_write():
     with pytest.raises(SolidgearError, match="from its catalogue data; vary bearing.A.scale, or"):
         bearing_variants(GEARBOX, ["bearing.A.kxx=1e8,2e8"])
+
+
+@pytest.mark.parametrize("spec", ["1e8:4e8:3", "1e8 N/m:4e8 N/m:3", "1e8,2.5e8,4e8"])
+def test_numbers_take_the_place_of_a_word_in_the_file(spec):
+    """A mesh stiffness is a number or "teeth"; a range of one is no word of the other."""
+    box = Path(__file__).parent / "found" / "people" / "my_box.toml"
+    beams = {"pinion": "euler", "gear": "euler", "ask": "system-modes", "n": 1}
+    swept = sg.sweep(box, f"mesh.stiffness={spec}", **beams)
+    assert list(swept["mesh.stiffness"]) == [1e8, 2.5e8, 4e8]
+    assert np.all(np.diff(swept["f1_hz"].astype(float)) > 0)

@@ -151,6 +151,8 @@ def test_a_shaft_takes_options_of_its_model():
     for wrong, said in (
         ("elements=3", "write SIDE.key=value, such as --set pinion.order=3; sides: pinion, gear"),
         ("pinion.order=3", "euler: there is no such option"),
+        ("pinion.stiffness=3", "an entry of a file varies by --vary of sweep"),
+        ("pinion.bearing.A.scale=3", "an entry of a file varies by --vary of sweep"),
     ):
         done = command(*words, "--set", wrong)
         assert done.exit_code != 0 and said in str(done.exception) + done.output

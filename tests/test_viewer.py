@@ -240,3 +240,11 @@ def test_points_that_coincide_are_those_that_a_tree_finds():
     pairs = (np.transpose(pair) for pair in packing._pairs(points, 1e-8))
     assert {tuple(pair) for some in pairs for pair in some} == near
     assert len(near) > 100
+
+
+def test_the_page_of_mode_shapes_has_the_cautions_of_its_frequencies(tmp_path, monkeypatch):
+    monkeypatch.setenv("SOLIDGEAR_RENDERER", "none")
+    disc = ROOT / "tests" / "found" / "spin" / "disc_at_speed.toml"
+    sg.compare(disc, models=("euler",)).write_report(tmp_path)
+    pages = [(tmp_path / name).read_text("utf-8") for name in ("report.html", viewer.TURNED)]
+    assert all("at 12000 rpm spin moves bending 1" in page for page in pages)

@@ -15,7 +15,6 @@ from solidgear.core.judge.cell_places import ELSEWHERE, CellPlaces, place_of_mos
 from solidgear.core.judge.study import study
 from solidgear.core.judge.ties import SCENE
 from solidgear.core.judge.where import error_places, least_certain, map_error, recorded_places
-from solidgear.core.meshing.corners import concave_edges
 from solidgear.core.quantity import Quantity
 from solidgear.cuts.features import CrossHole, Keyway
 from solidgear.show.render import render_modes
@@ -225,15 +224,6 @@ def test_a_smooth_free_block_has_its_error_in_cells_at_coordinates(tmp_path):
     assert place_of_most(scene, body, by_cells) == (
         f"cells at x = {x:.4g}, y = {y:.4g}, z = {z:.4g} mm"
     )
-
-
-def test_concave_edges_are_those_of_a_corner_cut_out():
-    cube = MeshHex().refined(1)
-    assert concave_edges(cube).size == 0
-    edges = concave_edges(cube.remove_elements([0]))
-    # three edges meet in the middle of the cube
-    assert edges.shape == (2, 3)
-    assert (np.abs(edges).size, len(np.unique(edges))) == (6, 4)
 
 
 @pytest.mark.long

@@ -129,6 +129,7 @@ def write_boxes(
     patches: Mapping[str, Callable[[np.ndarray], np.ndarray]],
     hollow: Callable[[np.ndarray], np.ndarray] | None = None,
     bricks: bool = False,
+    parts: Mapping[str, Callable[[np.ndarray], np.ndarray]] | None = None,
 ) -> None:
     """Write boxes between lines as a gmsh file, mm, with patches of the surface.
 
@@ -142,6 +143,8 @@ def write_boxes(
         Which of the middles of cells are none.
     bricks : bool
         In place of tetrahedra, into which boxes are cut.
+    parts : dict of str to callable, optional
+        Which of the middles of cells are of a group, in place of one group of all.
     """
     import meshio
     from skfem import MeshHex, MeshTet
@@ -157,9 +160,14 @@ def write_boxes(
         cells = mesh.t.T
     outside = mesh.boundary_facets()
     middle = mesh.p[:, mesh.facets[:, outside]].mean(axis=1)
-    blocks, tags = [("hexahedron" if bricks else "tetra", cells)], [np.full(len(cells), 1)]
-    names = {"body": np.array([1, 3])}
-    for tag, (name, on) in enumerate(patches.items(), 2):
+    blocks, tags, names = [], [], {}
+    inside = mesh.p[:, mesh.t].mean(axis=1)
+    for tag, (name, of) in enumerate((parts or {"body": lambda m: m[0] < np.inf}).items(), 1):
+        members = cells[of(inside)]
+        blocks.append(("hexahedron" if bricks else "tetra", members))
+        tags.append(np.full(len(members), tag))
+        names[name] = np.array([tag, 3])
+    for tag, (name, on) in enumerate(patches.items(), len(names) + 1):
         faces = mesh.facets[:, outside[on(middle)]].T
         blocks.append(("quad" if bricks else "triangle", faces))
         tags.append(np.full(len(faces), tag))

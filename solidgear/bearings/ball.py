@@ -81,15 +81,26 @@ class BallRow(Elements):
         mixed = products(radial, axial)
         return np.concatenate([products(radial, radial), 2 * mixed, products(axial, axial)])
 
-    def _stretch(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
-        """Return the unit vector and the distance between the centres, and the approach of every
-        ball.
+    def centres(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return the vectors (..., n) between the centres at every ball, radial and axial, m: zero
+        along a way on which the groove has ended.
         """
         felt_motion = np.asarray(motion, float)[..., FELT]
         radial = np.maximum(self.start[0] + felt_motion @ self._felt[0].T, 0.0)
         axial = self.start[1] + felt_motion @ self._felt[1].T
         if self.angle:
             axial = self.side * np.maximum(self.side * axial, 0.0)
+        return radial, axial
+
+    def turns(self, radial: np.ndarray, axial: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+        """Return whether vectors between the centres (..., n) move radially, and along y."""
+        return radial > 0, (self.side * axial > 0) if self.angle else np.ones_like(axial, bool)
+
+    def _stretch(self, motion: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray, np.ndarray]:
+        """Return the unit vector and the distance between the centres, and the approach of every
+        ball.
+        """
+        radial, axial = self.centres(motion)
         length = np.hypot(radial, axial)
         safe = np.where(length > 0, length, 1.0)
         return radial / safe, axial / safe, safe, np.maximum(length - self.free, 0.0)
@@ -107,8 +118,7 @@ class BallRow(Elements):
         along = POINT_POWER * self.constant * root
         turning = self.constant * approach * root / length
         # where the groove has ended nothing turns
-        outwards = radial > 0
-        along_y = (self.side * axial > 0) if self.angle else np.ones_like(outwards)
+        outwards, along_y = self.turns(radial, axial)
         weights = np.concatenate(
             [
                 along * radial**2 + turning * axial**2 * outwards,

@@ -11,7 +11,7 @@ import numpy as np
 from solidgear.bearings.catalogue import catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End
 from solidgear.bearings.life import Life, life
-from solidgear.bearings.solved import AS_STATED, Choice
+from solidgear.bearings.solved import AS_STATED, Choice, speed_of_bearing
 from solidgear.core import Bearing, Scene
 from solidgear.core.plain import plain
 from solidgear.core.scene import Lubrication
@@ -113,6 +113,6 @@ def life_of(
     """
     data = catalogue_of(bearing)
     assert data is not None
-    turns = speed or data.speed or (oil.speed if oil else None) or 0.0
+    turns = speed_of_bearing(data, oil, speed)
     lives = [life(data, rows, motion, oil, turns) for rows, motion in places]
     return BearingLife(bearing.name, lives[0], turns, label, tuple(lives[1:]))

@@ -237,7 +237,8 @@ class Catalogue(Model):
     preload_spring : float or None
         Stiffness of the spring that preloads the upper row of a pair, N/m.
     speed : float
-        Speed of the inner ring, rad/s; for balls, which then have inertia.
+        Speed of the inner ring, rad/s, where neither a case nor an operating point has one; balls
+        have their inertia at it.
     load : BearingLoad or None
         Load at which the stiffness is taken.
     displacement : BearingDisplacement or None
@@ -416,6 +417,15 @@ class Catalogue(Model):
         usual = {key: type(self).model_fields[key].get_default() for key in DESIGNATED}
         unlike = (k for k in DESIGNATED if getattr(self, k) == usual[k] != getattr(said, k))
         return ("clearance", *(key for key in unlike if getattr(said, key) is not None))
+
+    def at_speed(self, speed: float) -> Catalogue:
+        """Return the data at a speed of the shaft, rad/s; as they are where they are solved at rest
+        only.
+        """
+        at_rest_only = "speed" in _REFUSED.get(self.kind, {}) or self.preload_spring is not None
+        if not self.balls or at_rest_only or speed == self.speed:
+            return self
+        return self.model_copy(update={"speed": speed})
 
     @model_validator(mode="after")
     def _hangs_together(self) -> Catalogue:

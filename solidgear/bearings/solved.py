@@ -14,11 +14,13 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.bearings.balance import Linear, Mounted
-from solidgear.bearings.catalogue import Preload, catalogue_of
+from solidgear.bearings.catalogue import Catalogue, Preload, catalogue_of
 from solidgear.bearings.catalogued import Catalogued, End, catalogued, state
 from solidgear.bearings.equilibrium import Equilibrium, equilibrium
 from solidgear.core import Bearing, Scene, SceneError, SolidgearError, listed
+from solidgear.core.scene import Lubrication
 from solidgear.core.scene.acting import own_weight, station_loads, weights_of_masses
+from solidgear.core.scene.load_rules import named_case
 
 if TYPE_CHECKING:
     from solidgear.core import Body
@@ -73,9 +75,11 @@ def solved(
     body: Body | None = None,
     choice: Choice = AS_STATED,
     start: Equilibrium | None = None,
+    speed: float | None = None,
 ) -> Solved:
     """Return the stiffness of every catalogue bearing of a scene, under the loads of the bearings,
-    or those of the shaft in the first case.
+    or those of the shaft in the first case; at the speed of that case, or at another one of the
+    shaft, rad/s.
 
     Without a body, bearings that wait for the load of the shaft are taken at rest; the search
     begins at the equilibrium `start`. Refused are data that make no bearing, loads that one cannot
@@ -91,7 +95,7 @@ def solved(
     1400.0
     """
     places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
-    bearings_made = catalogued_bearings(scene, choice)
+    bearings_made = catalogued_bearings(scene, choice, speed or named_case(scene.cases).speed)
     settled = None
     if body is not None and wants_equilibrium(scene):
         loads = {name: choice.load * six for name, six in station_loads(scene).items()}
@@ -145,9 +149,18 @@ def _unused_ribs(scene: Scene) -> str:
     return f'; one rib of {listed(names)} would hold it one way: write holds = "+y" or "-y" there'
 
 
-def catalogued_bearings(scene: Scene, choice: Choice = AS_STATED) -> dict[str, Catalogued]:
-    """Return bearings of a scene that catalogue data describe, by name; a preload that is stated
-    for one of a pair holds for both.
+def speed_of_bearing(data: Catalogue, oil: Lubrication | None, shaft: float | None) -> float:
+    """Return the speed at which a bearing turns, rad/s, 0 where none is known: that of the shaft in a
+    case or at an operating point, else that of its data, else that of the lubrication.
+    """
+    return shaft or data.speed or (oil.speed if oil else None) or 0.0
+
+
+def catalogued_bearings(
+    scene: Scene, choice: Choice = AS_STATED, speed: float | None = None
+) -> dict[str, Catalogued]:
+    """Return bearings of a scene that catalogue data describe, by name, where a case gives the shaft
+    a speed, rad/s; a preload that is stated for one of a pair holds for both.
     """
     places = {b.name: k for k, b in enumerate(scene.bearings) if b.catalogue is not None}
 
@@ -155,6 +168,7 @@ def catalogued_bearings(scene: Scene, choice: Choice = AS_STATED) -> dict[str, C
         bearing = scene.bearings[places[name]]
         choice_here, data = choice.overrides.get(name, choice), catalogue_of(bearing)
         assert data is not None
+        data = data.at_speed(speed_of_bearing(data, scene.lubrication, speed))
         try:
             return catalogued(
                 data if preload is None else data.with_changes(preload=preload),

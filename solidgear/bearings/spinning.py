@@ -117,7 +117,7 @@ class SpinningBalls:
     def _inertia(self, s: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         """Return the forces (..., n) of inertia on balls at s, and the derivative by the angle."""
         g = self.row.diameter / self.row.pitch
-        normal = s / np.abs(s)
+        normal = _outwards(s)
         c, sin = normal.real, normal.imag
         orbit, orbit_a = (1 - g * c) / 2, g * sin / 2
         tan = sin / (c + g)
@@ -138,7 +138,8 @@ class SpinningBalls:
         """Return balls at o between grooves whose centres are s apart."""
         between = np.stack([s - o, o], axis=-2)
         length = np.abs(between)
-        approach = length - self._free
+        # a groove is an arc: past its centre a ball meets nothing
+        approach = np.where(between.real > 0, length, 0.0) - self._free
         across = self._constants * np.maximum(approach, 0.0) ** POINT_POWER / length
         return _Pressed(between, length, approach, across, across * between)
 
@@ -153,26 +154,25 @@ class SpinningBalls:
 
     def _settled(self, motion: np.ndarray) -> _Pressed:
         """Return the balls in equilibrium at motions (..., 6)."""
-        felt_motion = np.asarray(motion, float)[..., FELT]
-        key = felt_motion.shape, felt_motion.tobytes()
-        radial, axial = self.row.start
-        return self._last.on(
-            key, lambda: self._settle(radial + 1j * axial + felt_motion @ self._felt.T)
-        )
+        radial, axial = self.row.centres(motion)
+        s = radial + 1j * axial
+        return self._last.on((s.shape, s.tobytes()), lambda: self._settle(s))
 
     def _settle(self, s: np.ndarray) -> _Pressed:
         """Return the equilibrium of the balls, from that of the motion before on."""
         inertia, _ = self._inertia(s)
         pull = np.abs(inertia)
         last = self._last.latest
+        o = self._at_first(s, pull)
         if last is not None and last.force.shape[:-2] == s.shape[:-1]:
-            o = last.between[..., 1, :]  # the outer groove goes on pressing
-        else:
-            o = self._at_first(s, pull)
+            # the outer groove goes on pressing, unless the motion is far away
+            went_on = last.between[..., 1, :]
+            misses = [np.abs(self._miss(self._pressed(s, at), inertia)) for at in (went_on, o)]
+            o = np.where(misses[0] < misses[1], went_on, o)
         balls = self._pressed(s, o)
         nearly = 1e-4 * self.row.diameter
         for count in range(_MOST):
-            miss = balls.force[..., 0, :] - balls.force[..., 1, :] + inertia
+            miss = self._miss(balls, inertia)
             imbalance = np.abs(miss)
             reference = np.abs(balls.force[..., 1, :]) + pull
             balanced = imbalance <= _BALANCED * reference + _NEGLIGIBLE * 1e-3
@@ -186,6 +186,11 @@ class SpinningBalls:
             return balls
         raise SolidgearError(f"no equilibrium of the balls at {self.speed:.6g} rad/s")
 
+    @staticmethod
+    def _miss(balls: _Pressed, inertia: np.ndarray) -> np.ndarray:
+        """Return the forces (..., n) on balls that nothing balances."""
+        return balls.force[..., 0, :] - balls.force[..., 1, :] + inertia
+
     def _at_first(self, s: np.ndarray, pull: np.ndarray) -> np.ndarray:
         """Return vectors o with half of a static approach, and as far outwards as inertia alone
         presses.
@@ -193,11 +198,12 @@ class SpinningBalls:
         length = np.abs(s)
         half = np.maximum(length - self._free.sum(), 0.0) / 2
         alone = (pull / self.row.rings[1].constant) ** (1 / POINT_POWER)
-        return s / length * (self._free[1] + half + alone)
+        return _outwards(s) * (self._free[1] + half + alone)
 
     def _stepped(self, s, balls: _Pressed, step, miss, inertia, balanced) -> _Pressed:
-        """Return the balls after a step, of each not beyond where the force along it has turned;
-        of balls in balance that force is rounding.
+        """Return the balls after a step, of each not beyond where the force along it has turned, nor
+        off both grooves, where nothing would bring it back; of balls in balance that force is
+        rounding.
         """
         size = np.maximum(np.abs(step), 1e-30)
         step = step * np.minimum(1.0, 0.02 * self.row.diameter / size)
@@ -205,8 +211,9 @@ class SpinningBalls:
         share = np.ones_like(first)
         for _ in range(30):
             moved = self._pressed(s, _moved(balls, share * step))
-            left = moved.force[..., 0, :] - moved.force[..., 1, :] + inertia
-            too_far = ((left.conj() * step).real < -0.5 * first) & ~balanced
+            left = self._miss(moved, inertia)
+            turned = (left.conj() * step).real < -0.5 * first
+            too_far = (turned | (moved.approach < 0).all(axis=-2)) & ~balanced
             if not too_far.any():
                 break
             share = np.where(too_far, share / 2, share)
@@ -226,12 +233,14 @@ class SpinningBalls:
         """Return the derivative of the load, (..., 6, 6), exact."""
         balls = self._settled(motion)
         inner, both = self._stiffness(balls)
-        s = balls.between.sum(axis=-2)
+        radial, axial = self.row.centres(motion)
+        s = radial + 1j * axial
         _, by_angle = self._inertia(s)
         weights = []
-        for unit in (1.0 + 0j, 1j):
-            moved = np.full_like(s, unit)
-            by_inertia = by_angle * (unit * s.conj()).imag / np.abs(s) ** 2
+        # where the groove has ended nothing moves
+        for unit, moves in zip((1.0 + 0j, 1j), self.row.turns(radial, axial)):
+            moved = unit * moves
+            by_inertia = by_angle * (moved * s.conj()).imag / np.maximum(np.abs(s), 1e-30) ** 2
             follows = both.motion(inner.force(moved) + by_inertia)
             press = inner.force(moved - follows)
             weights += [press.real, press.imag]
@@ -255,6 +264,11 @@ class SpinningBalls:
             load[..., None],
             outer_load[..., None],
         )
+
+
+def _outwards(s: np.ndarray) -> np.ndarray:
+    """Return the directions of s; across the shaft where an inner ring is off them."""
+    return np.where(s.real > 0, s / np.maximum(np.abs(s), 1e-30), 1.0)
 
 
 def _moved(balls: _Pressed, step: np.ndarray) -> np.ndarray:

@@ -16,6 +16,7 @@ from solidgear.bearings.solved import AS_STATED, Choice, Solved, solved
 from solidgear.core import Bearing, Body, Scene, SceneError, SolidgearError, show
 from solidgear.core.plain import plain
 from solidgear.core.scene import BearingLoad
+from solidgear.core.scene.load_rules import named_case
 
 #: why one row of a pair carries nothing
 LOST = "any more: the pair has lost its preload"
@@ -136,8 +137,8 @@ def bearing_facts(
     scene: Scene, body: Body | None = None, speed: float | None = None
 ) -> list[BearingFacts]:
     """Compute every catalogue bearing of a scene at its load; `body` is the shaft, needed where
-    bearings settle under the load, and `speed` that of the shaft, rad/s, in place of the speeds of
-    bearings and lubrication.
+    bearings settle under the load, and `speed` that of the shaft, rad/s, in place of those of the
+    first case, bearings and lubrication.
 
     Examples
     --------
@@ -145,7 +146,7 @@ def bearing_facts(
     >>> scene = sg.load("geometry/gearbox_catalogue.toml")
     >>> facts = bearing_facts(scene, sg.build(scene, "timoshenko"))
     >>> [(fact.name, fact.data.kind, round(fact.life.life.basic / 1e9, 1)) for fact in facts]
-    [('A', 'cylindrical', 13.8), ('B', 'angular_contact', 23.1)]
+    [('A', 'cylindrical', 13.7), ('B', 'angular_contact', 23.1)]
     """
     bearings = [b for b in scene.bearings if b.catalogue is not None]
     if not bearings:
@@ -153,11 +154,12 @@ def bearing_facts(
             f"{scene.name}: no bearing is described by catalogue data; write [bearing.catalogue] "
             "in place of [bearing.stiffness], as in geometry/gearbox_catalogue.toml"
         )
+    speed = speed or named_case(scene.cases).speed
     unknown, corners = left_open([scene])
     choices = [AS_STATED, *corners]
     if any(data.estimated for data in map(catalogue_of, bearings) if data is not None):
         choices += [end for end in ENDS if end not in choices]
-    states = [solved(scene, body, choice) for choice in choices]
+    states = [solved(scene, body, choice, speed=speed) for choice in choices]
     over_estimates = [states[choices.index(c)] for c in (AS_STATED, *ENDS) if c in choices]
     facts = []
     for bearing in bearings:
@@ -190,16 +192,20 @@ class OverLoad:
 
 
 def over_load(
-    scene: Scene, body: Body | None = None, factors: Sequence[float] = FACTORS
+    scene: Scene,
+    body: Body | None = None,
+    factors: Sequence[float] = FACTORS,
+    speed: float | None = None,
 ) -> dict[str, OverLoad]:
     """Compute the stiffness of every catalogue bearing at multiples of the load of the scene;
-    `body` is the shaft, needed where bearings settle under the load.
+    `body` is the shaft, needed where bearings settle under the load, and `speed` that of the shaft,
+    rad/s.
     """
     diagonals: dict[str, list] = {b.name: [] for b in scene.bearings if b.catalogue is not None}
     for end in (AS_STATED, *ENDS):
         start = None
         for factor in factors:
-            state = solved(scene, body, replace(end, load=factor), start)
+            state = solved(scene, body, replace(end, load=factor), start, speed)
             start = state.equilibrium
             for name, rows in diagonals.items():
                 rows.append(np.diag(state.made[name].bearing.tangent(state.motion[name])))

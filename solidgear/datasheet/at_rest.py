@@ -25,6 +25,7 @@ from solidgear.datasheet.facts import (
     WorstNotch,
     WorstSection,
 )
+from solidgear.strength.deflection.at_rest import ROUNDING as ROUNDED
 from solidgear.strength.deflection.at_rest import Deflections, Measured
 from solidgear.strength.deflection.shaft import BearingState
 from solidgear.strength.stress.at_rest import StressAtRest, StressedShaft, lesser_elsewhere
@@ -247,7 +248,17 @@ def motions(deflected: Deflections, ports: Collection[str] = ()) -> tuple[Motion
     places = deflected.judge.displacement
     if ports:
         places = {name: six for name, six in places.items() if name in ports}
-    return tuple(_motion(name, six) for name, six in places.items() if len(six) == 6)
+    solution = deflected.judge
+    return tuple(
+        _motion(name, [_without_rounding(m, solution.largest_beside(m)) for m in six])
+        for name, six in places.items()
+        if len(six) == 6
+    )
+
+
+def _without_rounding(measure: Measured, size: float) -> Measured:
+    """Return a number, zero where it is rounding beside a size."""
+    return measure if abs(measure.value) > ROUNDED * size else replace(measure, value=0.0)
 
 
 def _motion(place: str, six: Sequence[Measured]) -> MotionFact:

@@ -104,6 +104,15 @@ class Language:
         """Return a value with figures that suit the relative error bar."""
         return self.text(value, si, digits_for(bar, FEWEST_DIGITS, MOST_DIGITS))
 
+    def measured(self, value: float, si: str, bar: float | None) -> tuple[str, str]:
+        """Return a value and its relative error bar; of a value inside its bar, which is as good as
+        zero, the bar about zero in the unit.
+        """
+        if bar is None or bar <= 1:
+            return self.with_bar(value, si, bar), self.bar(bar)
+        zero = self.text(0.0, si)
+        return zero, f"± {self.text(abs(value) * (1 + bar), si, FEWEST_DIGITS)}"
+
     def bar(self, share: float | None) -> str:
         """Return a relative error bar in per cent."""
         return DASH if share is None else self.local(f"± {bar_percent(share)}")

@@ -109,6 +109,10 @@ MESSAGES: dict[str, tuple[str, str]] = {
         "Without gyroscopic effects.",
         "Ohne Kreiselwirkung.",
     ),
+    "note no mesh bars": (
+        "What the meshes leave is not known: {model} shafts have no error bars in modes of a train.",
+        "Der Fehler der Netze ist nicht bekannt: {model} hat im Getriebe keine Fehlerangabe.",
+    ),
     # verdict
     "trust": ("Trust the {model}.", "Maßgebend ist: {model}."),
     "trust nothing": (

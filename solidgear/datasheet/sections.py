@@ -187,9 +187,9 @@ def _numbers(facts: Facts, words: Language) -> Section:
     rows: list[list[Any]] = []
     for figure in facts.figures[:MOST_ROWS]:
         si = "" if figure.unit == "1" else figure.unit
-        value = words.with_bar(figure.value, si, figure.bar).strip()
+        value, bar = words.measured(figure.value, si, figure.bar)
         name = words.measure(figure.name) if facts.train else words.quantity(figure.name)
-        cells = [Cell(figure.value, "strong", value), words.bar(figure.bar)]
+        cells = [Cell(figure.value, "strong", value.strip()), bar.strip()]
         rows.append([name, *cells, words.interval(figure.open)])
     notes = [words.say("note numbers")]
     if not facts.train and facts.drawn:
@@ -346,8 +346,8 @@ def _motions(facts: Facts, words: Language) -> Section:
         parts = (("across", across), ("along", along), ("tilt", about))
         for head, (size, bar, open_, si) in parts if motion.axial else (parts[0], parts[2]):
             share = bar / size if bar is not None and size else None
-            value = Cell(size, "strong", words.with_bar(size, si, share))
-            row: list[Any] = [motion.place, words.say(head), value, words.bar(share)]
+            value, error = words.measured(size, si, share)
+            row: list[Any] = [motion.place, words.say(head), Cell(size, "strong", value), error]
             rows.append([*row, words.between(open_, si)] if ranged else row)
     more = _more(len(facts.motions), MOST_MOTIONS, words)
     notes = (*more, words.say("note motions"))
@@ -367,7 +367,10 @@ def _frequencies(facts: Facts, words: Language) -> Section:
         value = Cell(frequency.hz, "strong", hertz)
         row = [words.mode(frequency.mode), value, words.bar(frequency.bar)]
         rows.append([*row, words.interval(frequency.open)] if ranged else row)
-    return Section("frequencies", title, Table(title, columns, rows), (), (words.say("note spin"),))
+    notes = [words.say("note spin")]
+    if facts.train and any(frequency.bar is None for frequency in facts.frequencies):
+        notes.append(words.say("note no mesh bars", model=words.model(facts.trust.model)))
+    return Section("frequencies", title, Table(title, columns, rows), (), tuple(notes))
 
 
 def _speeds(facts: Facts, words: Language) -> Section:

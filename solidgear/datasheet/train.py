@@ -63,10 +63,11 @@ def train_sheet(
     """Return the sheet of a train, at an operating point where it has one."""
     progress("natural frequencies")
     settled = Assembly(settled_at(train, point) if point else train)
-    modes = train_modes(settled, *usual_models(train.shafts).values(), at_most=MODES)
+    # all that system-modes lists, for they decide the meshes
+    modes = train_modes(settled, *usual_models(train.shafts).values(), at_most=train.ask.modes)
     models = tuple(dict.fromkeys(modes.models.values()))
     # only meshes of harmonic shafts have an error bar in modes of a train
-    listed = modes.modes
+    listed = modes.modes[: modes.rigid + MODES]
     if models != (JUDGE,):
         listed = tuple(replace(mode, mesh=None) for mode in listed)
     frequencies = tuple(map(_frequency, (mode for mode in listed if mode.frequency_hz > 0)))

@@ -76,7 +76,7 @@ def _on_its_seat(scene: Scene, bearing: Bearing, data: Catalogue) -> Iterator[st
             f"{_label(bearing, data)} has a bore of {_mm(data.bore)} and sits on a diameter of "
             f"{_mm(seat)} ({segments[0].name!r}): correct designation, bore, position or the segment"
         )
-    width, seat_width = data.seat_width, bearing.hi - bearing.lo
+    width, seat_width = data.seat_width, bearing.seat_width
     if not NARROW <= seat_width / width <= WIDE:
         pair = " with both of its rows" if data.paired else ""
         yield (

@@ -23,6 +23,7 @@ from solidgear.core.judge.quantities import in_words
 from solidgear.core.machine.memory import available_mb
 from solidgear.core.meshing.corners import sharpest_corner
 from solidgear.core.quantity import C_ZZ, FIRST_BENDING
+from solidgear.core.scene.shaft import on_face
 from solidgear.core.solve.backends import BACKENDS, INSTALL, missing
 from solidgear.core.solve.backends.memory_law import law
 from solidgear.core.solve.choice import FASTEST, SMALL
@@ -43,7 +44,7 @@ def narrow_seat(probe: Probe) -> Notices:
     for s in probe.seats:
         width = (s.hi - s.lo) / probe.diameter(s.y)
         rule = NARROW_POINT if s in probe.points else NARROW
-        if width < rule[0] and s.attachment != "section":
+        if width < rule[0] and s.attachment != "section" and not on_face(s):
             narrow.setdefault(rule, {})[s.name] = width
     for (limit, softer), seats in narrow.items():
         several = len(seats) > 1
@@ -91,9 +92,7 @@ def rigid_seats(probe: Probe) -> Notices:
 
 
 def seats_on_joints(probe: Probe) -> Notices:
-    """Yield notices on rigid seats whose end decides numbers, a much softer material under it, and on
-    faces that are held.
-    """
+    """Yield notices on rigid seats whose end decides numbers, a much softer material under it."""
     for sentence in number_cautions(probe.whole):
         yield Notice("caution", solids(), sentence)
 

@@ -241,6 +241,10 @@ class Solved(Chosen):
         return settled.body, settled
 
 
+#: what an option of a builder is not
+OF_BODIES = "options are of the mesh of a body; an entry of a file varies by --vary of sweep"
+
+
 def options(pairs: list[str] | None) -> dict:
     """Return the builder options from ``key=value`` texts; numbers as numbers, a list with commas
     as a tuple.
@@ -248,6 +252,8 @@ def options(pairs: list[str] | None) -> dict:
     out: dict = {}
     for pair in pairs or []:
         key, sep, text = pair.partition("=")
+        if "." in key:
+            raise SolidgearError(f"--set {show(pair)}: {OF_BODIES}")
         if not sep or not key.isidentifier():
             raise SolidgearError(f"--set {show(pair)}: write key=value, such as --set order=8")
         if key in out:

@@ -40,7 +40,7 @@ def scene(shaft: Scene) -> Table:
         lo, hi = f.span(shaft.segments)
         rows.append((f.name, f.what, 1e3 * lo, 1e3 * hi, f"on {f.segment}"))
     for b in shaft.bearings:
-        rows.append((b.name, "bearing", 1e3 * b.lo, 1e3 * b.hi, b.attachment))
+        rows.append((b.name, "bearing", *(1e3 * y for y in b.rim), b.attachment))
     seats = {s.name: s for s in shaft.stations}
     for m in shaft.masses:
         seat = seats[m.station]

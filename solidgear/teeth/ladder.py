@@ -43,7 +43,7 @@ class Judged:
 
     tangent: float  #: mean, N/m
     peak_to_peak: float | None  #: of the loaded transmission error, m
-    face_load_factor: float
+    face_load_factor: float | None
 
     @classmethod
     def of(cls, contact: MeshContact) -> Judged:
@@ -188,7 +188,7 @@ def ladder(
 
 
 def _norm(contact: MeshContact) -> Judged:
-    return Judged(contact.along_line(contact.norm.mesh), None, contact.norm_face_load_factor)
+    return Judged(contact.along_line(contact.norm.mesh), None, None)
 
 
 def _bars(contact: MeshContact, own_bars: Mapping[str, float]) -> dict[str, float]:

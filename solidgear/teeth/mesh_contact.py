@@ -3,9 +3,9 @@ r"""Contact of one mesh of a train over a mesh cycle, on its shafts, at an opera
 **Askew.**  How far flanks open along the face before they touch, by the supports under the load that
 the train at rest has, spread evenly along the face, of planets with the moment of their springs: at the
 pitch line, as ``n . (u1 - u2)`` in the transverse plane.  From end to end of the face it is the
-equivalent misalignment f_sh of ISO 6336-1, 7.5.2, as `deflect` has it, here with bending, tilting and
-the wind-up of both shafts within the face, which that of one lumped point does not have.  Where teeth
-then carry, and how far they stay askew, is the contact.
+equivalent misalignment f_sh of ISO 6336-1, 7.5.2, as `deflect` has it with the face load factor that
+follows, here with bending, tilting and the wind-up of both shafts within the face, which that of one
+lumped point does not have.  Where teeth then carry, and how far they stay askew, is the contact.
 """
 
 from __future__ import annotations
@@ -19,7 +19,7 @@ import numpy as np
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.gears.flank_shape import shape_opening
-from solidgear.core.gears.norm import NormStiffness, norm_face_load_factor, norm_stiffness
+from solidgear.core.gears.norm import NormStiffness, norm_stiffness
 from solidgear.core.gears.wheel_pair import WheelPair
 from solidgear.core.plain import plain
 from solidgear.teeth.contact.cells import ToothedPair
@@ -259,11 +259,6 @@ class MeshContact(SolvedMesh):
         return Skew(float(across @ motion) - turning, turning, shape)
 
     @property
-    def norm_face_load_factor(self) -> float:
-        """K_H beta by ISO 6336-1 from the same skew."""
-        return norm_face_load_factor(self.skew.total, self.line_load, self.norm.mesh)
-
-    @property
     def edge(self) -> str:
         """Where contact leaves the flank: a sentence, or nothing."""
         cycle, parts = self.cycle, []
@@ -288,7 +283,6 @@ class MeshContact(SolvedMesh):
             {
                 "contact_ratio": self.wheels.contact_ratio,
                 "overlap_ratio": self.wheels.overlap_ratio,
-                "face_load_factor_norm": self.norm_face_load_factor,
                 "skew": {
                     "bending": skew.bending,
                     "turning": skew.turning,

@@ -54,7 +54,6 @@ MESH = Printed(
     # of cylindrical teeth, then of bevel teeth
     sometimes={
         "overlap_ratio": float,
-        "face_load_factor_norm": Number,
         "skew": dict[str, Number],
         "ease_off": Any,
         "cutter_radius": Any,

@@ -244,7 +244,6 @@ def _along_the_face(mesh: SolvedMesh, bars: Mapping[str, float], units: Units) -
                 for cause, skew in skews.items()
             ),
             *rows[:1],
-            _plain("face load factor by ISO 6336-1", mesh.norm_face_load_factor, ".2f"),
         ]
     return rows
 

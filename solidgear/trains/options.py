@@ -11,7 +11,7 @@ import typer
 
 from solidgear.core import LADDER, SceneError, SolidgearError, Source, document_of, listed, show
 from solidgear.show.command import Group
-from solidgear.show.options import MODEL, Named, options_by_name, relative
+from solidgear.show.options import MODEL, OF_BODIES, Named, options_by_name, relative
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.shaft import checked_model, usual_models
 from solidgear.trains.file.reading import as_written
@@ -282,7 +282,12 @@ def of_shafts(
         if side not in models:
             raise SolidgearError(f"settings: no shaft {show(side, 40)}; there are {listed(models)}")
         kind, base = checked_model(models[side])
-        out[side, base or kind] = LADDER[base or kind].checked(dict(options))
+        model = LADDER[base or kind]
+        try:
+            out[side, base or kind] = model.checked(dict(options))
+        except SolidgearError as error:
+            beside = "" if {*options} <= {*model.options} else f"; {OF_BODIES}"
+            raise SolidgearError(f"{side}: {error}{beside}") from None
     return out
 
 

@@ -12,6 +12,7 @@ GROUND = {
     "core.named",
     "core.machine",
     "core.registry",
+    "core.safety",
 }
 #: rooms of the core: what each may import
 CORE = {
@@ -22,6 +23,7 @@ CORE = {
     "core.plain": set(),
     "core.named": {"core.errors"},
     "core.registry": set(),
+    "core.safety": set(),
     "core.frames": {"core.errors"},
     "core.springs": {"core.errors"},
     "core.quantity": {"core.frames"},

@@ -216,7 +216,7 @@ def _turning(record: Record, shapes: dict[str, Solution]) -> Turning | None:
     if not models:
         return None
     title = record.scene.get("title") or record.scene.get("name") or ""
-    turning = Turning(tuple(models), title)
+    turning = Turning(tuple(models), title, cautions=record.warnings)
     turning.packed  # noqa: B018  # now, while pictures are drawn
     return turning
 

@@ -23,11 +23,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from solidgear.core.solve.groups import BESIDE
+from solidgear.core.safety import BESIDE
 from solidgear.core.solve.neighbours import best_assignment
-
-#: gap that is solved on for: a bar is no wider than three times what the energy says
-ROOM = 1 / 3
 
 
 def clusters(values: Sequence[float] | np.ndarray) -> list[range]:

@@ -24,11 +24,12 @@ import numpy as np
 
 from solidgear.core.body import FURTHER, Block, Body
 from solidgear.core.body.cache import Cache
-from solidgear.core.bounds.clusters import ROOM, cluster_of, clusters, lower_ends
+from solidgear.core.bounds.clusters import cluster_of, clusters, lower_ends
 from solidgear.core.bounds.loads import Loading
 from solidgear.core.bounds.patches import local_energies
 from solidgear.core.bounds.richer_space import RicherSpace
 from solidgear.core.errors import NoBounds
+from solidgear.core.safety import ROOM, SLOWEST
 from solidgear.core.solve.groups import is_dense
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.statics import flexibility, twin_matrix
@@ -40,8 +41,6 @@ if TYPE_CHECKING:
 Same = tuple[tuple[int, int], ...]
 #: modes of a body, perhaps in other supports, and the names of those whose bounds will be computed
 Later = tuple[ModeSet, Sequence[str]]
-#: an order leaves at most this share of the remaining error
-SLOWEST = 0.8
 #: energy of displacements, in that of a mode, that its error does not rest on
 NEGLIGIBLE = 1e-10
 

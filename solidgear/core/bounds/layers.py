@@ -8,7 +8,8 @@ energy of the error over that in one order more rises by
     c (2 nu)^4 (w / t)^2,
 
 which is measured, as is c.  What is one cell thick and hardly changes its volume locks in both orders,
-so that nothing is known of its error.
+so that nothing is known of its error. A few such cells among others are enough, the fewer the more the
+bulk modulus outweighs the shear modulus: they lock with the one, the rest gives way with the other.
 
 Rigid seats side by side on a surface, with a gap between them, are no layer: see
 :mod:`solidgear.core.bounds.narrow`.
@@ -18,15 +19,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
-from solidgear.core.bounds.safety import LOCKING, RIM
 from solidgear.core.errors import NoBounds
 from solidgear.core.meshing.quality import outward
+from solidgear.core.models.solid.edges import SharpEdges, sharp_edges
+from solidgear.core.safety import ALONG, LOCKING, RIM
 from solidgear.core.scene.shaft import without_axis
 
 if TYPE_CHECKING:
@@ -35,8 +38,6 @@ if TYPE_CHECKING:
     from solidgear.core.scene import Scene
     from solidgear.core.scene.parts import Material
 
-#: cosine of the angle between faces that count as one, or as opposite: within 60 degrees
-ALONG = 0.5
 #: distances of a face that are none, in lengths of the mesh
 HAIR = 1e-9
 
@@ -79,6 +80,7 @@ class Layers:
     mesh: SolidMesh  #: whose cells name materials by their numbers here
     materials: tuple[Material, ...]
     names: tuple[str, ...]  #: of a part made of each, in words
+    rigid: tuple[np.ndarray, ...]  #: facets of every rigid seat
     held: Held
     with_axis: bool
 
@@ -90,24 +92,32 @@ class Layers:
         kinds = np.array([materials.index(material) for material in parts])
         mesh = replace(mesh, segment=kinds[mesh.segment])
         firsts = tuple(names[parts.index(material)] for material in materials)
-        held = _held(scene, body, mesh, materials)
-        return cls(mesh, materials, firsts, held, not without_axis(scene))
+        rigid = tuple(_rigid(scene, body, mesh))
+        held = _held(mesh, materials, rigid)
+        return cls(mesh, materials, firsts, rigid, held, not without_axis(scene))
+
+    @cached_property
+    def sharp(self) -> SharpEdges:
+        """Edges along which stress is singular."""
+        return sharp_edges(self.mesh, self.materials, np.concatenate([*self.rigid, []]).astype(int))
 
     def refuse_locked(self) -> None:
-        """Refuse a mesh with one cell across a layer that is held on both sides and hardly changes its
-        volume: it locks, and in one order more too, so that most of the error remains unseen.
+        """Refuse a mesh with one cell across much of a layer that is held on both sides and hardly
+        changes its volume: it locks, and in one order more too, so that most of the error remains
+        unseen.
         """
-        m, held = self.mesh.mesh, self.held
+        held = self.held
         for number, (material, name) in enumerate(zip(self.materials, self.names)):
             mine = self.mesh.segment[held.cells] == number
-            cells = np.unique(held.cells[mine])
-            if material.nu <= LOCKING or not len(cells):
+            if material.nu <= LOCKING or not mine.any():
                 continue
-            corners = np.isin(m.t[:, cells], m.facets[:, held.facets[mine]])
-            if 2 * corners.all(axis=0).sum() > len(cells):
+            cells = np.unique(held.cells[mine])
+            share = _spanning(self.mesh.mesh, cells, held.facets[mine], held.out[:, mine]).mean()
+            if share * _bulk(material.nu) > _bulk(LOCKING):
                 raise NoBounds(
-                    f"{name}, of Poisson's ratio {material.nu:g}, is held on both sides and one cell "
-                    "thick, and such a layer locks unseen: use smaller cells there",
+                    f"{name}, of Poisson's ratio {material.nu:g}, is held on both sides and "
+                    f"{'' if share > 0.5 else 'in places '}one cell thick, and such a layer locks "
+                    "unseen: use smaller cells there",
                     finer_helps=True,
                 )
 
@@ -120,6 +130,24 @@ class Layers:
         # cells along a rim differ, and all of it gives way
         means = [added[(rims.face == face) & (added > 0)] for face in np.unique(rims.face)]
         return max((float(mean.mean()) for mean in means if len(mean)), default=0.0)
+
+
+def _bulk(nu: float) -> float:
+    """Return the bulk modulus over the shear modulus."""
+    return 2 * (1 + nu) / (3 * (1 - 2 * nu))
+
+
+def _spanning(m: Any, cells: np.ndarray, facets: np.ndarray, out: np.ndarray) -> np.ndarray:
+    """Return which cells (k,) have all of their corners on held facets (f,), some on one that is opposite
+    to another by the normals (3, f), and not beside it in a corner of what holds them.
+    """
+    normal = np.zeros((3, m.p.shape[1]))
+    for corners in m.facets[:, facets]:
+        np.add.at(normal.T, corners, out.T)
+    size = np.linalg.norm(normal, axis=0)
+    of_cells = (normal / np.where(size > 0, size, 1.0))[:, m.t[:, cells]]
+    opposite = np.einsum("xik,xjk->ijk", of_cells, of_cells).min(axis=(0, 1)) < -ALONG
+    return opposite & (size[m.t[:, cells]] > 0).all(axis=0)
 
 
 def _parts(scene: Scene) -> tuple[list[Material], list[str]]:
@@ -143,11 +171,11 @@ class Held:
     face: np.ndarray  #: (k,) number of the face that they make with others
 
 
-def _held(scene: Scene, body: Body, mesh: SolidMesh, materials: Sequence[Material]) -> Held:
+def _held(mesh: SolidMesh, materials: Sequence[Material], rigid: Sequence[np.ndarray]) -> Held:
     """Return the facets of rigid seats, and of joints seen from the softer material."""
     m = mesh.mesh
     joints, softer = _joints(mesh, materials)
-    kinds = [joints, *_rigid(scene, body, mesh)]
+    kinds = [joints, *rigid]
     facets = np.concatenate(kinds).astype(int)
     cells = np.concatenate([softer, *(m.f2t[0, seat] for seat in kinds[1:])]).astype(int)
     kind = np.repeat(np.arange(len(kinds)), [len(part) for part in kinds])

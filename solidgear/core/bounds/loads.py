@@ -20,7 +20,7 @@ import numpy as np
 from solidgear.core.body import Block
 from solidgear.core.bounds.richer_space import Mapped, RicherSpace, hats, inverted, mapped
 from solidgear.core.kernel.assembly import batches
-from solidgear.core.kernel.lobatto import at_nodes, gauss, products, sides
+from solidgear.core.meshing.lobatto import at_nodes, gauss, products, sides
 from solidgear.core.models.harmonic.families import family_of
 
 #: bytes that the arrays of one batch of pieces may take: enough for one call to pay, and few enough

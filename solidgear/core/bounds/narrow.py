@@ -23,17 +23,15 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.bounds.safety import GAP, REACH
+from solidgear.core.bounds.singular_places import end_exponent
 from solidgear.core.models.solid.mesh import SolidMesh
-from solidgear.core.scene.shaft import without_axis
+from solidgear.core.safety import GAP, LOAD_EDGE, REACH
+from solidgear.core.scene.shaft import on_face, without_axis
 
 if TYPE_CHECKING:
     from solidgear.core.body import Body
     from solidgear.core.scene import Scene
 
-#: exponents of displacement at the ends of averaged and rigid seats on a smooth surface
-AVERAGED, RIGID = 1.0, 1 / 2
-EXPONENTS = {"average": AVERAGED, "rigid": RIGID}
 #: ends along the shaft, depth of the cells below, m, and the exponent at the ends
 Seat = tuple[float, float, float, float]
 
@@ -47,7 +45,7 @@ def narrow_share(scene: Scene, body: Body, order: int) -> float:
         return 1.0
     seats = _seats(scene, body, mesh)
     shares = [share_of(order, depth / (hi - lo), a) for lo, hi, depth, a in seats]
-    rigid = sorted(seat for seat in seats if seat[3] == RIGID)
+    rigid = sorted(seat for seat in seats if seat[3] < LOAD_EDGE)
     for (_, end, *before), (start, _, *after) in pairwise(rigid):
         if start > end:
             depth = max(before[0], after[0])
@@ -93,15 +91,18 @@ def mesh_of(body: Body) -> SolidMesh | None:
 def _seats(scene: Scene, body: Body, mesh: SolidMesh) -> list[Seat]:
     """Return the seats of a body, averaged and rigid ones."""
     stations = {station.name: station for station in scene.stations}
+    rigid = [stations[p.name] for p in body.ports if p.attachment == "rigid" and p.name in stations]
     seats: list[Seat] = []
     for port in body.ports:
         station = stations.get(port.name)
-        if station is None or port.attachment not in EXPONENTS:
+        if station is None or on_face(station):
+            continue
+        if port.attachment not in ("average", "rigid"):
             continue
         facets = mesh.seat(station, scene.segments, 1e-7 * scene.length)
         if len(facets):
-            depth, exponent = _depth(mesh, facets), EXPONENTS[port.attachment]
-            seats.append((station.lo, station.hi, depth, exponent))
+            exponent = end_exponent(scene, station, rigid) if station in rigid else LOAD_EDGE
+            seats.append((station.lo, station.hi, _depth(mesh, facets), exponent))
     return seats
 
 

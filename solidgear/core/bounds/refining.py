@@ -20,8 +20,8 @@ import numpy as np
 from solidgear.core.body import Body
 from solidgear.core.bounds.harmonic import richer_space
 from solidgear.core.bounds.lines import Lines, place_of
-from solidgear.core.bounds.meeting import least_side
 from solidgear.core.meshing.cells import ENDS
+from solidgear.core.meshing.meeting import least_side
 from solidgear.core.meshing.meridian import CUT_RATIO, Meridian
 from solidgear.core.scene.coned import coned
 

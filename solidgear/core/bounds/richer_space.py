@@ -14,25 +14,19 @@ from scipy.sparse.csgraph import connected_components
 
 from solidgear.core.body import Block, Body, Port
 from solidgear.core.bounds.lines import Lines, place_of
-from solidgear.core.bounds.meeting import SAME, least_side
-from solidgear.core.bounds.singular_places import Place, singular_places
-from solidgear.core.errors import NoBounds
-from solidgear.core.kernel.lobatto import at_nodes, products
+from solidgear.core.bounds.singular_places import Place, refuse_unresolved, singular_places
 from solidgear.core.meshing.cells import ENDS
 from solidgear.core.meshing.corner_layers import cut_towards
+from solidgear.core.meshing.lobatto import at_nodes, products
+from solidgear.core.meshing.meeting import SAME, least_side
 from solidgear.core.meshing.meridian import CUT_RATIO, Meridian, on_side
-from solidgear.core.models.harmonic.blocks import Work
+from solidgear.core.models.harmonic.blocks import EDGE_ENDS, Work
 from solidgear.core.models.harmonic.families import Family
+from solidgear.core.safety import EXTRA, LAYERS, SHORT
 
 if TYPE_CHECKING:
     from solidgear.core.models.harmonic.mesh import HarmonicMesh
     from solidgear.core.scene import Scene
-
-
-#: orders above that of the mesh, and cuts towards singular corners (one where only a load jumps)
-EXTRA, LAYERS = 2, 2
-#: a side shorter than this share of another one of its cell joins the hats at its ends
-SHORT = 0.1
 
 
 class RicherSpace:
@@ -80,12 +74,7 @@ class RicherSpace:
         """
         least = least_side(self.scene.length)
         for place in self.corners.values():
-            if place.within(least) > 1 / 2:
-                raise NoBounds(
-                    f"no mesh resolves the {place.what} (y = {1e3 * place.y:.4g} mm), so much softer is "
-                    "the material under that seat: to the last micrometre the place decides numbers; "
-                    'let it end elsewhere, or use attachment = "average"'
-                )
+            refuse_unresolved(f"{place.what} (y = {1e3 * place.y:.4g} mm)", place.within(least))
         out = np.ones(self.flat.cells.shape[1])
         for vertex, place in self.corners.items():
             if place.sharp:
@@ -157,25 +146,14 @@ class RicherSpace:
         stations = {s.name: s for s in self.scene.stations}
         for index, port in enumerate(self.ports):
             station = stations[port.name]
-            if port.attachment == "section":
-                cells, side = self._plane(station.y)
-            else:
-                cells, side = self._work.seat_cells(station), 1
+            cells, direction, value = self._work.side(station, port.attachment)
+            side = ENDS.index(EDGE_ENDS[direction, value])
             self.carrying.append(self._on_side(cells, side))
             if port.attachment == "rigid":
                 self.tied[index] = self._functions(self.carrying[-1])
-                ends = np.unique(self.flat.cells[1:3, cells])
+                ends = np.unique(self.flat.cells[list(ENDS[side])][:, cells])
                 joined += [np.array([ends[0], v]) for v in ends[1:]]
         self.corner_hat = _united(self.flat.points.shape[1], joined)
-
-    def _plane(self, y: float) -> tuple[np.ndarray, int]:
-        """Return the cells that end at a plane, and their side there."""
-        distance = np.abs(self.flat.points[1][self.flat.cells] - y)
-        tol = 1e-9 * self.scene.length
-        below = np.flatnonzero((distance[2:] < tol).all(axis=0))
-        if len(below):
-            return below, 2
-        return np.flatnonzero((distance[:2] < tol).all(axis=0)), 0
 
     def _on_side(self, cells: np.ndarray, side: int) -> list[tuple[int, int]]:
         """Return pieces and their sides that lie on a side of some cells."""

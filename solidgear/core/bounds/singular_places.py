@@ -4,28 +4,30 @@ planes of section ties. All that refines, judges or names such places reads it.
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterable, Iterator
+from collections.abc import Collection, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from math import atan2, pi
 from typing import TYPE_CHECKING, NamedTuple, Protocol
 
 import numpy as np
 
-from solidgear.core.bounds.meeting import SAME, Meeting, meeting
-from solidgear.core.meshing.corners import SHOULDER, corner_exponent
+from solidgear.core.errors import NoBounds
 from solidgear.core.meshing.grading import corner_length
+from solidgear.core.meshing.meeting import SAME, Meeting, meeting
+from solidgear.core.meshing.wedge import SAME_ANGLE, wedge_exponent
+from solidgear.core.safety import LOAD_EDGE, UNRESOLVED
 from solidgear.core.scene.coned import coned
-from solidgear.core.scene.shaft import attached_stations
+from solidgear.core.scene.corner import SURFACES
+from solidgear.core.scene.limits import TOUCH
+from solidgear.core.scene.shaft import attached_stations, on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Scene, Segment
+    from solidgear.core.scene.feature import OnSegment
     from solidgear.core.scene.outline import Edge
+    from solidgear.core.scene.parts import Material
     from solidgear.core.scene.shaft import Station
 
-#: a surface that turns by less than this (rad) from one segment to the next counts as smooth
-SMOOTH = 0.02
-#: exponent at the end of an averaged seat, where the load on a smooth surface ends
-LOAD_EDGE = 1.0
 #: share of the reach of a place that no drawing is meant to, and of its energy that may lie within
 DETAIL, DECIDING = 0.01, 0.1
 
@@ -73,9 +75,9 @@ class Place:
 
     def within(self, distance: float) -> float:
         """Return the share of the energy that stress at the place stores which lies no farther from it,
-        m: it goes with the power 2 a.
+        m.
         """
-        return min(distance / self.reach, 1.0) ** (2 * self.exponent)
+        return share_within(distance / self.reach, self.exponent)
 
     def distance(self, points: np.ndarray) -> np.ndarray:
         """Return the distance (n,) of points (3, n) from it, m."""
@@ -108,12 +110,37 @@ def singular_places(
     for spot in (*_blends(scene, shape), *_corners(shape), *_joints(shape), *_loaded(shape, tied)):
         if any(np.hypot(spot.y - p.y, spot.r - p.r) <= tol for p in places):
             continue
-        meets = meeting(shape, spot.y, spot.r, rigid) if spot.angle is None else None
+        meets = spot.meets or meeting(shape.segments, spot.y, spot.r, rigid)
         what = spot.what if meets is None else _named(spot, meets, rigid, tol)
-        exponent = corner_exponent(spot.angle or 0.0) if meets is None else meets.exponent
-        is_round = spot.angle == pi
+        exponent = LOAD_EDGE if meets is None else meets.exponent
+        is_round = spot.meets is not None and spot.meets.angle == pi and not any(spot.meets.held)
         places.append(Place(what, spot.y, spot.r, spot.reach, exponent, is_round))
     return tuple(places)
+
+
+def feature_exponent(features: Iterable[OnSegment], scene: Scene) -> float:
+    """Return the exponent of displacement at some features of a scene: those with notches are cut at
+    right angles.
+    """
+    notched = any(feature.notched for feature in features)
+    return wedge_exponent([((1.5 if notched else 1.0) * pi, scene.segments[0].material)])
+
+
+def share_within(distance: float, exponent: float) -> float:
+    """Return the share of the energy that stress at a place stores which lies no farther from it, in
+    reaches of the place: it goes with the power 2 a.
+    """
+    return min(distance, 1.0) ** (2 * exponent)
+
+
+def refuse_unresolved(what: str, share: float) -> None:
+    """Refuse bars where so large a share of the energy at a place lies nearer than any cell."""
+    if share > UNRESOLVED:
+        raise NoBounds(
+            f"no mesh resolves the {what}, so much softer is the material under what is held there: to "
+            "the last micrometre the place decides numbers; let it end elsewhere, or use "
+            'attachment = "average"'
+        )
 
 
 def sharpest_exponent(scene: Scene, rigid: Collection[str] | None = None) -> float:
@@ -129,8 +156,21 @@ def sharpest_exponent(scene: Scene, rigid: Collection[str] | None = None) -> flo
     ties = attached_stations(scene.stations)
     if rigid is not None:
         ties = ((s, "rigid" if s.name in rigid else "average") for s in scene.stations)
-    notched = [SHOULDER for feature in scene.features if feature.notched]
-    return min(LOAD_EDGE, *notched, *(place.exponent for place in singular_places(scene, ties)))
+    return min(
+        LOAD_EDGE,
+        feature_exponent(scene.features, scene),
+        *(place.exponent for place in singular_places(scene, ties)),
+    )
+
+
+def end_exponent(scene: Scene, station: Station, rigid: Sequence[Station]) -> float:
+    """Return the exponent of displacement at the sharper end of a seat, with those of some stations
+    rigid.
+    """
+    segments = coned(scene).segments
+    ends = [(y, _segment(scene, y, station.y).radius_at(y)[1]) for y in (station.lo, station.hi)]
+    meets = [meeting(segments, y, r, rigid) for y, r in ends]
+    return min((m.exponent for m in meets if m is not None), default=LOAD_EDGE)
 
 
 def undecided_ends(scene: Scene) -> Iterator[str]:
@@ -156,8 +196,8 @@ class _Spot(NamedTuple):
     y: float
     r: float
     reach: float
-    #: of the material of a blend, rad, at one that segments have not; None where segments meet
-    angle: float | None = None
+    #: at a blend that segments have not; None where segments meet
+    meets: Meeting | None = None
 
 
 def _named(spot: _Spot, meets: Meeting, rigid: Iterable[Station], tol: float) -> str:
@@ -176,12 +216,18 @@ def _blends(scene: Scene, shape: Scene) -> Iterator[_Spot]:
         if not corner.root:
             continue
         what, reach = f"{corner.kind} {corner.name}", corner.axial + corner.radial
+        material = shape.segments[corner.owner].material
         if corner.centre is not None:
-            yield _Spot(what, *corner.middle[::-1], reach, angle=pi)
+            yield _Spot(what, *corner.middle[::-1], reach, _wedge(pi, material))
             continue
         slope, is_cone = atan2(corner.radial, corner.axial), shape is not scene
         for (r, y), turn in ((corner.on_face, pi / 2 - slope), (corner.on_cylinder, slope)):
-            yield _Spot(what, y, r, reach, angle=None if is_cone else pi + turn)
+            yield _Spot(what, y, r, reach, None if is_cone else _wedge(pi + turn, material))
+
+
+def _wedge(angle: float, material: Material, held: bool = False) -> Meeting:
+    """Return one material of an angle, rad, with one face held or none."""
+    return Meeting(((angle, material),), (held, False))
 
 
 def _corners(scene: Scene) -> Iterator[_Spot]:
@@ -202,7 +248,7 @@ def _corner(edge: Edge) -> str:
         return ""
     if edge.steps:
         return "shoulder" if outer else "step of the bore"
-    if edge.r > 0 and edge.bend > SMOOTH:
+    if edge.r > 0 and edge.bend > SAME_ANGLE:
         return f"concave kink of the {'surface' if outer else 'bore'}"
     return ""
 
@@ -223,21 +269,33 @@ def _joints(scene: Scene) -> Iterator[_Spot]:
 def _loaded(scene: Scene, ties: Iterable[tuple[Station, str]]) -> Iterator[_Spot]:
     """Yield the ends of seats, also where the surface ends: the shear that the seat carries meets a
     face that is free of it, and rotations go with the logarithm of the distance; and the ends of
-    planes that carry a load.
+    planes and faces that carry a load.
     """
     for station, tie in ties:
-        if tie == "section":
-            segment = _segment(scene, station.y)
-            kind, reach = f"section plane of {station.name}", corner_length(segment)
-            bore, surface = segment.radius_at(station.y)
-            yield _Spot(kind, station.y, surface, reach)
-            if bore > 0:
-                yield _Spot(f"{kind} in the bore", station.y, bore, reach)
+        if tie == "section" or on_face(station):
+            plane = "section plane" if tie == "section" else "rim of the held face"
+            yield from _rings(scene, station.y, f"{plane} of {station.name}", tie == "rigid")
             continue
         for y in (station.lo, station.hi):
             segment = _segment(scene, y, inside=station.y)
             reach = min(corner_length(segment), station.hi - station.lo)
             yield _Spot(f"seat end of {station.name}", y, segment.radius_at(y)[1], reach)
+
+
+def _rings(scene: Scene, y: float, kind: str, held: bool) -> Iterator[_Spot]:
+    """Yield the rings at which a plane ends, or an end face, held or not: at a rim that is rounded off or
+    cut, where the blend begins.
+    """
+    segment = _segment(scene, y)
+    reach = corner_length(segment)
+    rims = {c.surface: c for c in scene.outline.corners if not c.root and abs(c.y - y) < TOUCH}
+    for surface, r in zip(SURFACES, segment.radius_at(y)[::-1]):
+        what = kind if surface == "outer" else f"{kind} in the bore"
+        if rim := rims.get(surface):
+            turn = 0.0 if rim.centre else atan2(rim.axial, rim.radial)
+            yield _Spot(what, y, rim.on_face[0], reach, _wedge(pi - turn, segment.material, held))
+        elif r > 0:
+            yield _Spot(what, y, r, reach)
 
 
 def _segment(scene: Scene, y: float, inside: float | None = None) -> Segment:

@@ -27,7 +27,7 @@ import numpy as np
 
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
-from solidgear.core.bounds.clusters import ROOM, lower_ends
+from solidgear.core.bounds.clusters import lower_ends
 from solidgear.core.bounds.enriched_block import EnrichedBlock, enriched_block, independent
 from solidgear.core.bounds.harmonic import (
     eigenvalue,
@@ -37,17 +37,21 @@ from solidgear.core.bounds.harmonic import (
     with_neighbours,
 )
 from solidgear.core.bounds.layers import Layers
-from solidgear.core.bounds.narrow import RIGID, mesh_of, narrow_share
-from solidgear.core.bounds.safety import LEAST, MISSING, SLOWER
-from solidgear.core.bounds.singular_places import sharpest_exponent
+from solidgear.core.bounds.narrow import mesh_of, narrow_share
+from solidgear.core.bounds.singular_places import (
+    refuse_unresolved,
+    share_within,
+    sharpest_exponent,
+)
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.errors import NoBounds
 from solidgear.core.kernel.room import MB
 from solidgear.core.machine.memory import NoRoom, require
 from solidgear.core.machine.processes import give_back
-from solidgear.core.meshing.corners import notch_exponent
+from solidgear.core.meshing.meeting import least_side
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.models.solid.seat_faces import Seats
+from solidgear.core.safety import CONVEX, LEAST, LOAD_EDGE, MISSING, MOST_STEPS, ROOM, SLOWER
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.inertia_relief import ratio
 from solidgear.core.solve.modes import Mode, ModeSet
@@ -59,11 +63,6 @@ if TYPE_CHECKING:
 
 #: relative error of the energy of displacements, far below that of the error sought
 FIELDS = 1e-14
-#: exponents of a body without an axis: at no concave edge, and at the end of a patch that a load on
-#: average acts on
-CONVEX, PATCH = 1.5, 1.0
-#: steps after which they have failed
-MOST_STEPS = 200
 #: share of an energy below which gains are rounding, and fall no more
 ROUNDING = 1e-12
 #: vectors of every column that are held while they go on
@@ -202,31 +201,30 @@ def share_of_error(scene: Scene, body: Body) -> float:
     """
     element = body.mesh["element"]
     order = ELEMENTS[element].order
-    share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body)))
+    mesh = mesh_of(body)
+    layers = None if mesh is None else Layers.of(scene, body, mesh)
+    share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body, layers)))
     if not without_axis(scene):
         share = max(share, narrow_share(scene, body, order))
-    mesh = mesh_of(body)
-    if mesh is not None:
-        layers = Layers.of(scene, body, mesh)
+    if layers is not None:
         layers.refuse_locked()
         share += layers.added_share
     return share * SLOWER.get(element, 1.0)
 
 
-def _sharpest(scene: Scene, body: Body) -> float:
+def _sharpest(scene: Scene, body: Body, layers: Layers | None) -> float:
     """Return the exponent of displacement at the sharpest edge of a body, with or without an axis."""
-    mesh = mesh_of(body)
-    # edges of a part from a file stand in its mesh, as those of its round part do in the outline
-    notch = 1.0 if mesh is None or scene.body is None else notch_exponent(mesh.mesh)
+    edges = LOAD_EDGE
+    if layers is not None and scene.body is not None:
+        # edges of a part from a file stand in its mesh, as those of its round part do in the outline
+        edges = layers.sharp.sharpest
+        share = share_within(least_side(scene.length) / scene.length, edges)
+        refuse_unresolved(layers.sharp.at_sharpest(layers.mesh), share)
     if not without_axis(scene):
         rigid = [port.name for port in body.ports if port.attachment == "rigid"]
-        return min(sharpest_exponent(scene, rigid), notch)
-    patches = [s for s in scene.stations if getattr(s, "patch", None) is not None]
-    return min(
-        notch if notch < 1 else CONVEX,
-        RIGID if any(s.attachment == "rigid" for s in patches) else CONVEX,
-        PATCH if patches else CONVEX,
-    )
+        return min(sharpest_exponent(scene, rigid), edges)
+    loaded = any(getattr(s, "patch", None) is not None for s in scene.stations)
+    return edges if loaded or edges < LOAD_EDGE else CONVEX
 
 
 @dataclass(frozen=True)

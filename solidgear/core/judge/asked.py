@@ -9,12 +9,12 @@ from typing import Any, TypedDict, Unpack
 
 from solidgear.core.body import Body, as_supports
 from solidgear.core.body.supports import Holding
-from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.errors import SolidgearError, show
 from solidgear.core.judge.hidden import complete_list
 from solidgear.core.judge.settle import Settled, settle
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.loading import load
+from solidgear.core.safety import ROOM
 from solidgear.core.scene import Scene
 from solidgear.core.scene.document import Source
 from solidgear.core.scene.limits import MOST_MODES

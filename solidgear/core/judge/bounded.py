@@ -23,13 +23,13 @@ from solidgear.core.bounds.harmonic import (
     is_bounded,
     with_tail,
 )
-from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
 from solidgear.core.judge.solving import Statics, extended_modes, numbers
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.quantity import STIFFNESS, Quantity
 from solidgear.core.registry import addition
+from solidgear.core.safety import LOCAL
 from solidgear.core.scene.coned import coned
 from solidgear.core.solve.groups import MOST_SHAPES
 from solidgear.core.solve.modes import ModeSet, modes

@@ -1,8 +1,7 @@
 """Cautions that belong to numbers of a scene, whichever command or call shows them.
 
 Who shows a number asks here, by the names of what is shown, and by the model: what a rigid seat does
-that ends on softer material, and a face that is held, concern solids; what spin does concerns natural
-frequencies.
+that ends on softer material concerns solids; what spin does concerns natural frequencies.
 """
 
 from __future__ import annotations
@@ -21,11 +20,6 @@ if TYPE_CHECKING:
 
 #: static numbers and natural frequencies that studies show, without error bars
 SHOWN: Mapping[str, None] = dict.fromkeys(map(str, QUANTITIES))
-#: of a round bar clamped by its face against the face held rigid, harmonic solid of order 8
-DISHES = (
-    "bending 1 of a bar five diameters long is 0.7 % higher, of one a diameter long 1.8 % and its "
-    "axial 1 3 %, of one half as long 3 and 14 %"
-)
 #: static ones alone
 AT_REST: Mapping[str, None] = dict.fromkeys(str(q) for q in QUANTITIES if not q.is_frequency)
 
@@ -52,20 +46,14 @@ def number_cautions(
 
 
 def _on_seats(scene: Scene, model: str) -> list[str]:
-    """Return sentences on what the seats of a solid do: those held by a face, and rigid ones that end
-    where details of the drawing decide all numbers.
+    """Return sentences on rigid seats of a solid that end where details of the drawing decide all
+    numbers.
     """
     if (model and model not in LADDER.of(SOLID)) or without_axis(scene):
         return []
-    sentences = [
-        f"{bearing.name} holds the mean motion of the {bearing.face} face, which is free to dish: with "
-        f"a rigid face {DISHES}"
-        for bearing in scene.bearings
-        if bearing.face is not None and bearing.hold is not None
-    ]
-    if len({segment.material for segment in scene.segments}) > 1:
-        # start-up: for shafts of several materials alone
-        from solidgear.core.bounds.singular_places import undecided_ends
+    if len({segment.material for segment in scene.segments}) == 1:
+        return []
+    # start-up: for shafts of several materials alone
+    from solidgear.core.bounds.singular_places import undecided_ends
 
-        sentences += undecided_ends(scene.plain)
-    return sentences
+    return [*undecided_ends(scene.plain)]

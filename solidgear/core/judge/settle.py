@@ -21,7 +21,6 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core.body import Body, as_supports
-from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.bounds.harmonic import is_beside_many
 from solidgear.core.bounds.refining import Meshed
 from solidgear.core.errors import NoBounds
@@ -41,6 +40,7 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.machine.threads import pinned
 from solidgear.core.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
+from solidgear.core.safety import ROOM
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.modes import ModeSet, modes
 

@@ -9,19 +9,20 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body
-from solidgear.core.bounds.layers import carrying
-from solidgear.core.bounds.narrow import EXPONENTS
-from solidgear.core.bounds.singular_places import Place, Singular, singular_places
+from solidgear.core.bounds.layers import Layers, carrying
+from solidgear.core.bounds.singular_places import Place, Singular, feature_exponent, singular_places
 from solidgear.core.kernel.assembly import reference
-from solidgear.core.meshing.corners import SHOULDER, concave_edges
 from solidgear.core.meshing.grading import corner_length
+from solidgear.core.safety import LOAD_EDGE
 from solidgear.core.scene.feature import SMALLEST
 from solidgear.core.scene.shaft import attached_stations, without_axis
 
 if TYPE_CHECKING:
+    from solidgear.core.models.solid.edges import SharpEdges
     from solidgear.core.models.solid.mesh import SolidMesh
     from solidgear.core.scene import Scene
     from solidgear.core.scene.outline import Outline
+    from solidgear.core.scene.patches import Patch
 
 #: distance of a node from a surface of revolution that it lies on, in largest radii: a tenth of the
 #: least size of a feature, since nodes between corners are moved to keep the volume
@@ -61,11 +62,26 @@ def solid_places(
     # where features are cut out of some of the cells that a bar is shared among
     mesh: SolidMesh = getattr(drawing, "cut", drawing).solved
     if without_axis(scene):
-        return (*_edges(mesh, ()), *_ends_of_patches(scene, body, mesh))
+        return (*_on_a_block(scene, body, mesh),)
     around = singular_places(scene, attached_stations(scene.stations, attachments))
     if scene.body is not None:
-        return (*around, *_edges(mesh, around))
+        sharp = Layers.of(scene, body, mesh).sharp
+        return (*around, *_lines(mesh, sharp, around, np.zeros(0, int)))
     return (*around, *_features(scene, mesh))
+
+
+def _on_a_block(scene: Scene, body: Body, mesh: SolidMesh) -> Iterator[Spots]:
+    """Yield the singular places of a body without an axis."""
+    sharp = Layers.of(scene, body, mesh).sharp
+    taken = [np.zeros(0, int)]
+    for patch, tie, edges in _ends_of_patches(scene, body, mesh):
+        what, exponent = f"end of patch {patch.name}", LOAD_EDGE
+        if tie == "rigid":
+            taken.append(edges)
+            exponent = float(sharp.exponents_on(edges).min())
+        points = mesh.mesh.p[:, np.unique(mesh.mesh.edges[:, edges])]
+        yield Spots(what, points, patch.extent, exponent)
+    yield from _lines(mesh, sharp, (), np.concatenate(taken))
 
 
 def _features(scene: Scene, mesh: SolidMesh) -> Iterator[Spots]:
@@ -90,7 +106,7 @@ def _features(scene: Scene, mesh: SolidMesh) -> Iterator[Spots]:
             " or ".join(f"{f.what} {f.name}" for f in members),
             points,
             min(corner_length(segment), *lengths),
-            SHOULDER if any(f.notched for f in members) else 1.0,
+            feature_exponent(members, scene),
         )
 
 
@@ -130,31 +146,39 @@ def _in_mirrors(outline: Outline, nodes: np.ndarray) -> Iterator[np.ndarray]:
         yield np.abs(nodes[axis]) < NEAR * outline.largest_radius
 
 
-def _edges(mesh: SolidMesh, known: tuple[Place, ...]) -> Iterator[Spots]:
-    """Yield the concave edges of the surface of a mesh that are none of the places known, every
+def _lines(
+    mesh: SolidMesh, sharp: SharpEdges, known: tuple[Place, ...], taken: np.ndarray
+) -> Iterator[Spots]:
+    """Yield the sharp edges of a mesh that are none of the places known nor of the edges taken, every
     line of them that hangs together as one.
     """
     from scipy.sparse import coo_matrix
     from scipy.sparse.csgraph import connected_components
 
     points = mesh.mesh.p
-    edges = concave_edges(mesh.mesh)
+    edges = mesh.mesh.edges[:, sharp.numbers]
     size = float(np.ptp(points, axis=1).max())
+    free = ~np.isin(sharp.numbers, taken)
     for place in known:
         away = place.distance(points[:, edges.ravel()]).reshape(2, -1)
-        edges = edges[:, (away > SAME * size).any(axis=0)]
-    vertices, numbers = np.unique(edges, return_inverse=True)
-    start, end = numbers.reshape(2, -1)
-    graph = coo_matrix((np.ones(len(start)), (start, end)), shape=2 * (len(vertices),))
-    count, line = connected_components(graph, directed=False)
-    for k in range(count):
-        on_line = points[:, vertices[line == k]]
-        extent = float(np.linalg.norm(np.ptp(on_line, axis=1)))
-        yield Spots("concave edge", on_line, extent, SHOULDER)
+        free &= (away > SAME * size).any(axis=0)
+    for joined, what in ((False, "concave edge"), (True, "change of material")):
+        chosen = np.flatnonzero(free & (sharp.joined == joined))
+        vertices, numbers = np.unique(edges[:, chosen], return_inverse=True)
+        start, end = numbers.reshape(2, -1)
+        graph = coo_matrix((np.ones(len(start)), (start, end)), shape=2 * (len(vertices),))
+        count, line = connected_components(graph, directed=False)
+        for k in range(count):
+            on_line = points[:, vertices[line == k]]
+            extent = float(np.linalg.norm(np.ptp(on_line, axis=1)))
+            exponent = float(sharp.exponents[chosen[line[start] == k]].min())
+            yield Spots(what, on_line, extent, exponent)
 
 
-def _ends_of_patches(scene: Scene, body: Body, mesh: SolidMesh) -> Iterator[Spots]:
-    """Yield the borders of patches, where their loads end."""
+def _ends_of_patches(
+    scene: Scene, body: Body, mesh: SolidMesh
+) -> Iterator[tuple[Patch, str, np.ndarray]]:
+    """Yield the patches of a body, how each is tied, and the edges around it, where its load ends."""
     outside = mesh.boundary
     corners = mesh.mesh.facets[:, outside]
     edges = mesh.mesh.f2e[:, outside]
@@ -165,7 +189,5 @@ def _ends_of_patches(scene: Scene, body: Body, mesh: SolidMesh) -> Iterator[Spot
             continue
         on_patch = carrying(body, index)[corners].all(axis=0)
         numbers, times = np.unique(edges[:, on_patch], return_counts=True)
-        border = np.unique(mesh.mesh.edges[:, numbers[times == 1]])
-        if len(border):
-            what, exponent = f"end of patch {patch.name}", EXPONENTS[port.attachment]
-            yield Spots(what, mesh.mesh.p[:, border], patch.extent, exponent)
+        if (times == 1).any():
+            yield patch, port.attachment, numbers[times == 1]

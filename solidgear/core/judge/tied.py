@@ -10,13 +10,13 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core.body import Body, Supports, as_supports
-from solidgear.core.bounds.clusters import ROOM
 from solidgear.core.judge.quantities import judged, usual
 from solidgear.core.judge.solving import ENOUGH, Answer, Statics, search_modes
 from solidgear.core.judge.ties import SCENE, SECTION
 from solidgear.core.ladder import build
 from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.meter import Meter
+from solidgear.core.safety import ROOM
 from solidgear.core.solve.modes import ModeSet
 from solidgear.core.solve.statics import SOLVED, flexibility
 

@@ -14,8 +14,8 @@ import numpy as np
 from skfem import Element, ElementQuad1
 
 from solidgear.core.kernel.assembly import Tabulated, Tabulation, reference
-from solidgear.core.kernel.lobatto import gauss
 from solidgear.core.meshing.cells import ENDS, HIGH, LOW, OUT
+from solidgear.core.meshing.lobatto import gauss
 from solidgear.core.meshing.meridian import Meridian
 
 _CORNERS = ElementQuad1()

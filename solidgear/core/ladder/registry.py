@@ -5,7 +5,7 @@ name, title, family, options and ``builder``; a solid also has ``meshes`` coarse
 of its error bars and, where building it to count is dear, ``_size``.  A variant of a model is a
 subclass with a ``preset``.  ``answer`` takes the first solid that models a scene, so that one which
 does not refine itself stands behind one that does.  A further level of meshes is a line in the file
-of its model; its safety in ``core/bounds/safety.json`` is measured anew by ``python -m
+of its model; its safety in ``core/safety.py`` is measured anew by ``python -m
 validation.campaign features``.
 """
 

@@ -208,10 +208,9 @@ class Solid(Volume):
 
 
 def _has_lines(scene: Any, options: Options) -> bool:
-    """Return whether stress is singular along lines of a mesh of tetrahedra, other than the ends of
-    averaged seats.
-    """
-    from solidgear.core.bounds.singular_places import LOAD_EDGE, sharpest_exponent
+    """Return whether a mesh of tetrahedra has lines that layers are made towards."""
+    from solidgear.core.bounds.singular_places import sharpest_exponent
+    from solidgear.core.meshing.corners import SLOW
     from solidgear.core.scene.shaft import without_axis
 
     # of a sector that repeats, edges are meshed by themselves
@@ -219,7 +218,7 @@ def _has_lines(scene: Any, options: Options) -> bool:
         return False
     ties = options.get("attachments") or ()
     rigid = [s.name for s in scene.stations if "rigid" in (*ties, s.attachment)]
-    return sharpest_exponent(scene, rigid) < LOAD_EDGE
+    return sharpest_exponent(scene, rigid) < SLOW
 
 
 def _without_layers(level: Options) -> Level:

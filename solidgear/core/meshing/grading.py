@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.core.scene.limits import TOUCH
+from solidgear.core.scene.shaft import on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene import Bearing, PointMass, Port, Segment
@@ -188,8 +189,10 @@ def _bore(segment) -> tuple[float, float]:
 
 
 def segments_under(station: Station, segments: Sequence[Segment]) -> list[int]:
-    """Return the places of the segments that a seat lies on."""
+    """Return the places of the segments that a seat lies on, or that end at a face."""
     lo, hi = station.lo + TOUCH, station.hi - TOUCH
+    if on_face(station):
+        lo, hi = hi, lo
     return [k for k, s in enumerate(segments) if s.y0 < hi and lo < s.y1]
 
 

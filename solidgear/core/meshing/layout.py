@@ -32,6 +32,7 @@ from solidgear.core.meshing.grading import (
 from solidgear.core.meshing.marks import marks_of, owners_of
 from solidgear.core.scene.corner import SURFACES, Corner, Surface
 from solidgear.core.scene.outline import Outline
+from solidgear.core.scene.shaft import on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene.parts import Segment
@@ -428,10 +429,13 @@ def needs_of(
     for station in scene.stations:
         ties = attachments or (station.attachment,)
         is_rigid, narrow = "rigid" in ties, grading.seat_layers(station, segments, ties)
+        edge = min(grading.edge, grading.across)
+        layers = grading.across if is_rigid else edge
         for i in segments_under(station, segments):
-            edge = min(grading.edge, grading.across)
             reach = grading.radial_reach * corner_length(segments[i])
-            add(bands[i][1], i, (grading.across if is_rigid else edge) + narrow, reach)
-            if "section" in ties:  # whose plane ends in a ring of the bore as well
+            add(bands[i][1], i, layers + narrow, reach)
+            if on_face(station):  # which ends in a ring of the bore as well, as sections do
+                add(bands[i][0], i, layers, reach)
+            elif "section" in ties:
                 add(bands[i][0], i, edge, reach)
     return needs

@@ -84,5 +84,4 @@ def _snapped(station: Station, marks: Sequence[float]) -> Station:
         return station
     if "lo" in type(station).model_fields:
         return station.model_copy(update={"lo": lo, "hi": hi})
-    y = station.y if getattr(station, "face", None) else (lo + hi) / 2
-    return station.model_copy(update={"y": y, "seat_width": hi - lo})
+    return station.model_copy(update={"y": (lo + hi) / 2, "seat_width": hi - lo})

@@ -368,18 +368,19 @@ def _misplaced(
     jumps: Sequence[float],
 ) -> str:
     """Return the first reason why a station cannot be where it is; empty where there is none."""
-    if station.hi <= station.lo:
-        return f"the span must end beyond its start at {station.lo:.6g} m"
-    reach = f"the {kind} reaches from {station.lo:.6g} to {station.hi:.6g} m"
-    if station.lo < -TOUCH or station.hi > length + TOUCH:
+    lo, hi = _taken(station)
+    if hi <= lo:
+        return f"the span must end beyond its start at {lo:.6g} m"
+    reach = f"the {kind} reaches from {lo:.6g} to {hi:.6g} m"
+    if lo < -TOUCH or hi > length + TOUCH:
         return f"{reach}, which must lie inside the shaft (0 to {length:.6g} m)"
-    if station.hi - station.lo < SHORTEST * length:
+    if hi - lo < SHORTEST * length:
         return (
             f"{reach}, under a millionth of the length of the shaft, {length:.6g} m: "
             "probably wrong units"
         )
     for step in jumps:
-        if station.lo + TOUCH < step < station.hi - TOUCH:
+        if lo + TOUCH < step < hi - TOUCH:
             return (
                 f"{reach}, across the step of the outer radius at {step:.6g} m; it must end there"
             )
@@ -388,9 +389,15 @@ def _misplaced(
         # would weld the two points together
         seats = neighbour_kind == kind == "seat"
         exclusive = seats or neighbour.attachment == station.attachment == "rigid"
-        if exclusive and min(station.hi, neighbour.hi) - max(station.lo, neighbour.lo) > TOUCH:
-            return f'{reach} and overlaps that of "{neighbour.name}" ({neighbour.lo:.6g} to {neighbour.hi:.6g} m)'
+        start, end = _taken(neighbour)
+        if exclusive and min(hi, end) - max(lo, start) > TOUCH:
+            return f'{reach} and overlaps that of "{neighbour.name}" ({start:.6g} to {end:.6g} m)'
     return ""
+
+
+def _taken(station: Port | Bearing | PointMass) -> tuple[float, float]:
+    """Return the ends of the surface that a station takes, m: beside a face its rim."""
+    return getattr(station, "rim", (station.lo, station.hi))
 
 
 def blend_problems(

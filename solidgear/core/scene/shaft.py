@@ -87,7 +87,7 @@ def attached_stations(
     stations: Iterable[Station], attachments: Sequence[str] | None = None
 ) -> Iterator[tuple[Station, str]]:
     """Yield stations with each of their attachments: those given, else the one of the station; the
-    middle of an end face is always a section.
+    average of an end face is that of its section.
 
     Examples
     --------
@@ -95,10 +95,15 @@ def attached_stations(
     >>> tip = Port(name="tip", y=1.0, lo=0.9, hi=1.0)
     >>> wall = Bearing(name="wall", y=0.0, seat_width=0.02, hold="clamped", face="start")
     >>> [(s.name, way) for s, way in attached_stations([tip, wall], ["average", "rigid"])]
-    [('tip', 'average'), ('tip', 'rigid'), ('wall', 'section')]
+    [('tip', 'average'), ('tip', 'rigid'), ('wall', 'section'), ('wall', 'rigid')]
     """
     for station in stations:
-        usual = (station.attachment,)
-        on_face = getattr(station, "face", None) is not None
-        for attachment in usual if on_face or not attachments else attachments:
+        ways = attachments or (station.attachment,)
+        mean = "section" if on_face(station) else "average"
+        for attachment in dict.fromkeys(mean if way == "average" else way for way in ways):
             yield station, attachment
+
+
+def on_face(station: Station) -> bool:
+    """Return whether a station is on an end face, and not on a seat."""
+    return getattr(station, "face", None) is not None

@@ -79,12 +79,12 @@ class Settled(Model):
 
 
 def usual_attachment(bearing: Mapping[str, Any]) -> Attachment:
-    """Return how a bearing is attached that says nothing, by its table: the middle of an end face as
-    a section, a held seat as one rigid piece, any other by its mean.
+    """Return how a bearing is attached that says nothing, by its table: what is held as one rigid
+    piece, any other by its mean, which at an end face is that of the section.
     """
-    if bearing.get("face") is not None:
-        return "section"
-    return "average" if bearing.get("hold") is None else "rigid"
+    if bearing.get("hold") is not None:
+        return "rigid"
+    return "average" if bearing.get("face") is None else "section"
 
 
 class Bearing(Placed):
@@ -113,7 +113,8 @@ class Bearing(Placed):
     scale : float
         Factor on its whole stiffness; bearing loads are found without it.
     attachment : {'average', 'rigid', 'section'}
-        How the seat follows the bearing: by its mean, but a held seat as one rigid piece.
+        How the seat, or the face, follows the bearing: by its mean, but one that is held as one
+        rigid piece. The mean of a face is that of its section.
     status : str
         Source of its numbers: published, identified, assumed, measured, or for catalogue data
         calculated (inner geometry given) or estimated.
@@ -123,18 +124,18 @@ class Bearing(Placed):
         A floating bearing slides in its seat and carries nothing along y; by default cylindrical
         and needle rollers float, and all others locate.
     hold : {'clamped', 'pinned'} or None
-        In place of a stiffness: no motion, or rotations only, of the seat as one rigid piece; with
-        another `attachment`, and at a `face`, of its mean alone.
+        In place of a stiffness: no motion, or rotations only, of the seat or face as one rigid
+        piece; with another `attachment`, of its mean alone.
     face : {'start', 'end'} or None
-        The end face whose middle it holds, as a section; the seat is then the rim beside that face.
+        The end face that it holds in place of a seat; `seat_width` is then that of the rim beside
+        it, which pictures show and no other seat may share.
     patch : Patch or None
         Faces that it holds, on a body without an axis.
 
     Raises
     ------
     SceneError
-        A matrix that is not symmetric, is indefinite, or has too soft springs; a face
-        attached in another way than as a section.
+        A matrix that is not symmetric, is indefinite, or has too soft springs.
 
     Examples
     --------
@@ -260,10 +261,8 @@ class Bearing(Placed):
 
     @classmethod
     def usually_attached(cls, table: Mapping[str, Any], places: Places) -> str:
-        """Return the attachment of the file, if it has one, for all but the middle of an end face."""
-        if "face" in table or places.attachment is None:
-            return usual_attachment(table)
-        return places.attachment
+        """Return the attachment of the file, if it has one."""
+        return places.attachment or usual_attachment(table)
 
     @model_validator(mode="after")
     def _status_of_data(self) -> Bearing:
@@ -292,13 +291,9 @@ class Bearing(Placed):
         return self
 
     @model_validator(mode="after")
-    def _a_face_is_a_section(self) -> Bearing:
-        if self.face is not None and self.attachment != "section":
-            raise SceneError(
-                "a face is held in its middle, as a section: leave attachment out, or for the rim "
-                "beside the face write position and from in place of face",
-                path=("attachment",),
-            )
+    def _mean_of_a_face(self) -> Bearing:
+        if self.face is not None and self.attachment == "average":
+            object.__setattr__(self, "attachment", "section")
         return self
 
     @model_validator(mode="after")
@@ -340,20 +335,25 @@ class Bearing(Placed):
         return self.with_changes(catalogue=data and data.with_changes(holds=way))
 
     def attached(self, attachment: str) -> Bearing:
-        """Return the bearing with another attachment of its seat; one on a face unchanged."""
-        return self if self.face else self.with_changes(attachment=attachment)
+        """Return the bearing with another attachment of its seat or face."""
+        return self.with_changes(attachment=attachment)
 
     @property
     def lo(self) -> float:
-        """Seat end towards y = 0, in m."""
-        inward = {"start": 0.0, "end": 1.0}.get(self.face or "", 0.5)
-        return round(self.y - self.seat_width * inward, POSITION_DECIMALS)
+        """Seat end towards y = 0, in m; the place of a face."""
+        return self.y if self.face else self.rim[0]
 
     @property
     def hi(self) -> float:
-        """Seat end away from y = 0, in m."""
-        outward = {"start": 1.0, "end": 0.0}.get(self.face or "", 0.5)
-        return round(self.y + self.seat_width * outward, POSITION_DECIMALS)
+        """Seat end away from y = 0, in m; the place of a face."""
+        return self.y if self.face else self.rim[1]
+
+    @property
+    def rim(self) -> tuple[float, float]:
+        """Ends of the seat, or of the rim beside a face, m, that no other seat may share."""
+        inward = {"start": 0.0, "end": 1.0}.get(self.face or "", 0.5)
+        lo, hi = self.y - self.seat_width * inward, self.y + self.seat_width * (1.0 - inward)
+        return round(lo, POSITION_DECIMALS), round(hi, POSITION_DECIMALS)
 
     @property
     def stiffness(self) -> np.ndarray:

@@ -157,10 +157,8 @@ def _bearing(scene: Scene, bearing: Bearing) -> Table:
     if bearing.housing is not None:
         table["housing"] = _elastic(bearing.housing)
     words = ["name", "y", "seat_width", "matrix", "catalogue", "housing", "hold", "face", "patch"]
-    if bearing.face is not None:  # always a section
-        words.append("attachment")
-    # a held seat is rigid where nothing is written, in whatever way its file attaches others
-    write = ("attachment",) if bearing.hold is not None else ()
+    # what is held is rigid where nothing is written, and the mean of a face no default
+    write = ("attachment",) if bearing.hold is not None or bearing.face is not None else ()
     return table_of(bearing, leave_out=(*words, *table), write=write) | table
 
 

@@ -16,6 +16,7 @@ import numpy as np
 from solidgear.core.body import FURTHER, Block, Body, Supports, component_rows
 from solidgear.core.body.cache import LastTwo
 from solidgear.core.errors import SolidgearError
+from solidgear.core.safety import BESIDE
 from solidgear.core.solve.coupling import groups
 from solidgear.core.solve.eigen import Raw, Solved, count_below, lowest
 from solidgear.core.solve.families import FAMILIES, family_of, repeats, waves_of
@@ -30,8 +31,6 @@ MOST_WAVES = 100
 CLEAR = 1.01
 #: shapes that a group searches on by, at least, for room above a list, and that are searched at most
 FARTHER, MOST_SHAPES = 4, 160
-#: gap between eigenvalues, relative to the upper one, below which modes are near each other
-BESIDE = 0.05
 # Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound
 # than a hundred times that, signs may turn.
 DOUBT = 0.01

@@ -68,6 +68,7 @@ from solidgear.core.bounds.solid import (
 )
 from solidgear.core.models.solid.enriched import by_cells, products_by_cells
 from solidgear.core.models.solid.mesh import SolidMesh
+from solidgear.core.safety import ALIKE, TURNING
 from solidgear.core.scene.coned import coned
 from solidgear.core.solve.statics import flexibility, port_fields
 from solidgear.cuts.corrected.body import Origin
@@ -78,10 +79,6 @@ if TYPE_CHECKING:
 
 #: shapes solved above those of the corrected solid, for 3D solids ovalise besides
 ABOVE = 6
-#: shapes of a plain part nearer than this, relative, may turn into one another
-NEAR = 0.05
-#: square of the cosine above which two shapes are the same mode
-ALIKE = 0.5
 #: least ratio of a change by features to the whole that weighs both in a cell: rounding
 SAME, TINY = 1e-6, 1e-300
 
@@ -316,7 +313,7 @@ def _of_modes(
     partners = [_most_like(cut, mode.motions[0].ravel(), gram) for mode in chosen]
     bests = [_most_like(uncut, shape.motion, gram) for shape in partners if shape is not None]
     # of shapes near these, those near of the harmonic solid
-    names = [s.mode.name for s in plain if any(_near(s, best, 3 * NEAR) for best in bests)]
+    names = [s.mode.name for s in plain if any(_near(s, best, 3 * TURNING) for best in bests)]
     bounds = harmonic_bounds(
         coned(difference.scene.plain),
         origin.plain,
@@ -383,7 +380,7 @@ def _turned(shapes: Sequence[_Shape], wanted: _Shape, gram: np.ndarray) -> np.nd
     best = _most_like(shapes, wanted.motion, gram)
     if best is None:
         return None
-    near = [_near(shape, best, NEAR) for shape in shapes]
+    near = [_near(shape, best, TURNING) for shape in shapes]
     cosines = np.array([s.motion @ gram @ wanted.motion for s in shapes]) * near
     return cosines / np.linalg.norm(cosines)
 
@@ -394,7 +391,7 @@ def _plain_ends(
     """Return both ends of the exact eigenvalue of a shape of the plain part, from the harmonic modes
     that it consists of; None where it consists of none.
     """
-    near = [s for s in plain if _near(s, shape, NEAR)]
+    near = [s for s in plain if _near(s, shape, TURNING)]
     shares = np.array([(s.motion @ gram @ shape.motion) ** 2 for s in near])
     if shares.sum() < ALIKE:
         return None

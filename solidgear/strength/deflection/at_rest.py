@@ -41,6 +41,7 @@ from solidgear.trains.assembly.turn import StageTurn, over_a_turn
 from solidgear.trains.file.housing import HOUSING
 from solidgear.trains.file.operation import OperatingPoint
 from solidgear.trains.file.train import ALONE, Train
+from solidgear.trains.load.meshes_at_rest import MeshesAtRest
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.load.state import OperatingState
 from solidgear.trains.load.static_errors import StaticErrors
@@ -368,6 +369,7 @@ def deflections(
                 f"a {model} shaft has its bearings condensed into it; use one of "
                 f"{', '.join((*CHEAPER, JUDGE))}"
             )
+    MeshesAtRest(assembly, models).begin()
     for side, model in by_shaft.items():
         assembly.shaft_model(side, model)  # no settling to be timed
     operating = Operating(assembly, *models)
@@ -407,8 +409,7 @@ def _solution(
         )
         for side, model in by_shaft.items()
     )
-    askew = measured(misalignment(state.assembly, system))
-    skews = {m.name: (m.value, m.bar) for m in askew}
+    askew = misalignment(state.assembly, system)
     notes = [*state.notes, *(note for shaft in shafts for note in shaft.notes)]
     if housed:
         notes.append(f"deflection lines of {listed(housed)} are relative to the housing")
@@ -429,14 +430,14 @@ def _solution(
         load=load,
         models=by_shaft,
         mesh_forces=state.mesh_forces,
-        misalignment=askew,
+        misalignment=measured(askew),
         displacement=displacement,
         shafts=shafts,
         notes=tuple(notes),
         seconds=seconds,
         mounts=mounts,
         turns=over_a_turn(assembly, state, by_shaft),
-        face_loads=face_loads(state.assembly, system, state.coordinates, skews),
+        face_loads=face_loads(state, errors, askew),
         statics=_statics(assembly, load, shafts),
         lumped=() if load is None else tuple(p.name for p in assembly.scenes[ALONE].ports),
         still=_still(assembly, load),

@@ -4,27 +4,32 @@ r"""Face load factor of every mesh by ISO 6336-1, from how far its shafts let th
 
 with the transverse force per face width q and c = 0.85 c_gamma_alpha (clause 7, method C).  f_sh is
 computed, with bearings, bending and wind-up, so that it needs no factor for what an estimate leaves
-out; f_flanks is what helix slopes and measured flanks of the file leave from end to end of the face.
+out.  It is that of an even load, for the formula itself moves the load along the face: where the train
+rests with the force elsewhere, as teeth in contact have it, the flanks are taken on to the middle of
+the face by the stiffness at rest.  f_flanks is what helix slopes and measured flanks of the file leave from end to end of the face.
 Deviations that the file does not give, f_ma, and running-in, y_beta, are taken as zero.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Sequence
 from dataclasses import dataclass
 from math import cos
 
 import numpy as np
 
-from solidgear.core import SceneError, System
+from solidgear.core import SceneError
 from solidgear.core.gears.flank_shape import shape_opening
 from solidgear.core.gears.norm import norm_face_load_factor, norm_stiffness
-from solidgear.strength.deflection.misalignment import PARALLELS, meshes_of
+from solidgear.strength.deflection.misalignment import PARALLELS, Measure, meshes_of
 from solidgear.trains.assembly.assembly import Assembly
+from solidgear.trains.assembly.mesh_place import place_of, place_of_pair
 from solidgear.trains.assembly.stages import mesh_row
 from solidgear.trains.file.mesh_teeth import MeshTeeth, moduli_of, wheels_of
 from solidgear.trains.file.pairs import Pair
 from solidgear.trains.file.planetary import PlanetMesh
+from solidgear.trains.load.state import OperatingState
+from solidgear.trains.load.static_errors import StaticErrors
 
 #: name of the misalignment over the face
 SKEW = PARALLELS[-1]
@@ -36,7 +41,7 @@ class FaceLoad:
 
     mesh: str  #: name
     line_load: float  #: transverse force per face width, N/m
-    skew: float  #: f_sh, m
+    skew: float  #: f_sh under an even load, m
     shape: float  #: what the shapes of the flanks open over the face, m
     stiffness: float  #: c_gamma_alpha, N/m per m
     factor: float  #: K_H beta
@@ -44,37 +49,27 @@ class FaceLoad:
 
 
 def face_loads(
-    assembly: Assembly,
-    system: System,
-    coordinates: np.ndarray,
-    skews: Mapping[str, tuple[float, float | None]],
+    state: OperatingState, errors: StaticErrors, askew: Sequence[Measure]
 ) -> tuple[FaceLoad, ...]:
-    """Return the face load factors of all meshes of a train at rest whose teeth are known.
-
-    Parameters
-    ----------
-    assembly : Assembly
-        On the flanks that carry.
-    system : System
-    coordinates : (N,) ndarray
-        Of the state at rest.
-    skews : dict of str to (float, float or None)
-        f_sh of every mesh with its error bar, m, by the names of
-        :func:`solidgear.strength.deflection.misalignment.misalignment`.
+    """Return the face load factors of all meshes of a train at rest whose teeth are known, by f_sh of
+    every mesh among its misalignments `askew` and its errors.
     """
-    loads = []
+    assembly, system, coordinates = state.assembly, state.system, state.coordinates
+    skews, loads = {measure.name: measure.row for measure in askew}, []
     for mesh in meshes_of(assembly.train):
         teeth, name = _teeth(assembly, mesh), f"{SKEW}{mesh.label}"
         if teeth is None or name not in skews:
             continue
         wheels = teeth.wheels
         row, spring = mesh_row(system, mesh.name)
-        transverse = abs(spring * float(row @ coordinates)) * cos(wheels.base_helix)
+        force = abs(spring * float(row @ coordinates))
+        transverse = force * cos(wheels.base_helix)
         line_load = transverse / wheels.face_width
         if line_load == 0:
             continue
         stiffness = norm_stiffness(wheels, line_load, moduli_of(mesh)).mesh
-        skew, bar = skews[name]
+        bar = errors.error_bar(skews[name])
+        skew = float(skews[name] @ (coordinates + _to_middle(errors, mesh, teeth, force)))
         shape = teeth.along[0] * shape_opening(wheels, teeth.shapes)
         factors = [
             norm_face_load_factor(skew + shape + off, line_load, stiffness)
@@ -83,6 +78,22 @@ def face_loads(
         moved = None if bar is None else max(abs(f - factors[0]) for f in factors)
         loads.append(FaceLoad(mesh.name, line_load, skew, shape, stiffness, factors[0], moved))
     return tuple(loads)
+
+
+def _to_middle(
+    errors: StaticErrors, mesh: Pair | PlanetMesh, teeth: MeshTeeth, force: float
+) -> np.ndarray | float:
+    """Return the coordinates (N,) by which a train moves as the force of a mesh, N, goes to the middle
+    of its face; those of planets are there.
+    """
+    if isinstance(mesh, PlanetMesh):
+        return 0.0
+    assembly, system = errors.state.assembly, errors.tangent
+    places = place_of_pair(assembly, system, mesh), place_of(assembly, system, mesh, teeth)
+    if np.array_equal(places[0].pitch_point, places[1].pitch_point):
+        return 0.0
+    at, middle = (system.load(dict(place.load(system))) for place in places)
+    return system.static(force * (middle - at))
 
 
 def _teeth(assembly: Assembly, mesh: Pair | PlanetMesh) -> MeshTeeth | None:

@@ -176,8 +176,9 @@ def face_load(deflected: Deflection, units: Units = ENGINEERING) -> list[Table]:
         for load in deflected.face_loads
     ]
     note = (
-        "By c_ga of the materials, f_sh and slopes of the file's flanks, without further deviations and "
-        "running-in; line load: transverse force per face width. solidgear contact solves the teeth."
+        "By c_ga of the materials, f_sh under an even load and slopes of the file's flanks, without further "
+        "deviations and running-in; line load: transverse force per face width. solidgear contact solves "
+        "the teeth."
     )
     return [Table("Face load factor by ISO 6336-1", columns, rows, note)]
 

@@ -16,7 +16,7 @@ import numpy as np
 import scipy.sparse as sp
 
 from solidgear.core.frames import rotation
-from solidgear.core.kernel.lobatto import gauss
+from solidgear.core.meshing.lobatto import gauss
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.teeth.compliance.solid_mesh import SweptPitch, directions
 

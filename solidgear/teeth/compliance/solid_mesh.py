@@ -18,7 +18,7 @@ from skfem.refdom import RefHex
 
 from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.assembly import reference, unknowns
-from solidgear.core.kernel.lobatto import gauss
+from solidgear.core.meshing.lobatto import gauss
 from solidgear.core.models.solid.mesh import SolidMesh, basis_of
 from solidgear.teeth.compliance.mesh import PitchMesh
 

@@ -25,8 +25,8 @@ from solidgear.core.bounds.harmonic import (
     with_tail,
 )
 from solidgear.core.bounds.refining import HIGHEST, MOST_MESHES, Meshed
-from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.judge.refinement import FUTILE
+from solidgear.core.safety import LOCAL
 from solidgear.core.solve.statics import flexibility
 from solidgear.core.system.modes import SystemModes
 

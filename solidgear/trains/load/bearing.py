@@ -49,6 +49,7 @@ class SolvedBearings(ByName[BearingFacts | LivesOverPoints], Sheeted):
     case: str = ""  #: of the loads of a shaft that has several, of `facts`
     scene: Scene | None = field(default=None, repr=False)  #: of a shaft, under its load
     body: Body | None = field(default=None, repr=False)  #: on which its bearings settle
+    speed: float | None = None  #: of the shaft, rad/s, in place of those of the file
 
     @property
     def by_name(self) -> dict[str, BearingFacts | LivesOverPoints]:
@@ -67,7 +68,7 @@ class SolvedBearings(ByName[BearingFacts | LivesOverPoints], Sheeted):
                 "`out` belongs to a scene; for a train give torque and speed in [operation]"
             )
         with explained(self.scene):
-            curves = over_load(self.scene, self.body)
+            curves = over_load(self.scene, self.body, speed=self.speed)
         draw_bearings(Path(path), self.facts, curves)
 
     def as_dict(self) -> dict[str, Any]:
@@ -102,8 +103,8 @@ def bearing(
     load : str or dict, optional
         Of a shaft: another load, ``"x=2 kN, z=-500 N, thx=10 N*m"``, on the port, or on the bearing.
     speed : str, optional
-        Of a shaft: its speed, such as ``"3000 rpm"``, for lives in hours; by default that of the
-        case.
+        Of a shaft: its speed, such as ``"3000 rpm"``, for lives in hours and the inertia of balls;
+        by default that of the case.
     case : str or int, optional
         Of a shaft: case of its loads, by name or number; by default the first.
 
@@ -122,7 +123,7 @@ def bearing(
     >>> import solidgear as sg
     >>> found = sg.bearing("geometry/gearbox_catalogue.toml")
     >>> [(fact.name, fact.data.kind, round(fact.life.life.basic / 1e9, 1)) for fact in found.facts]
-    [('A', 'cylindrical', 13.9), ('B', 'angular_contact', 22.7)]
+    [('A', 'cylindrical', 13.9), ('B', 'angular_contact', 22.8)]
     """
     if is_train(source):
         for option, value in {"`load`": load, "`speed`": speed, "`case`": case}.items():
@@ -140,17 +141,13 @@ def bearing(
     with explained(source):
         assembly = Assembly.of(scene, kept=NO_MODES)
         body = body_at_rest(assembly)
-        facts = [
-            fact
-            for fact in bearing_facts(scene, body, turns or first.speed)
-            if name in (None, fact.name)
-        ]
+        facts = [fact for fact in bearing_facts(scene, body, turns) if name in (None, fact.name)]
         if not facts:
             raise SolidgearError(f"`name` {name}: no bearing of catalogue data has this name")
         over_cases = lives_of(assembly) if len(scene.cases) > 1 else []
         lives = tuple(life for life in over_cases if name in (None, life.name))
     label = first.name if scene.cases else ""
-    return SolvedBearings(scene.name, tuple(facts), lives, (), label, scene, body)
+    return SolvedBearings(scene.name, tuple(facts), lives, (), label, scene, body, turns)
 
 
 def _of_train(source: Source, name: str | None) -> SolvedBearings:

@@ -35,7 +35,7 @@ def bearing(
     ] = None,
     speed: Annotated[
         str | None,
-        typer.Option("--speed", help='Speed of the shaft, such as "3000 rpm", for lives in hours.'),
+        typer.Option("--speed", help='Speed of the shaft, such as "3000 rpm".'),
     ] = None,
     case: CaseName = None,
     out: Annotated[

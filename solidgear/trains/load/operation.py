@@ -50,7 +50,7 @@ from solidgear.trains.system.equilibrium import (
 
 #: a [load] of a scene that is off the mesh force by less, of it, is that force written down
 SAME_LOAD = 0.05
-#: trains at rest that are kept: one on each flank, or the last two whose teeth differ
+#: trains at rest that are kept: one on each flank, or the last two whose teeth or speeds differ
 FLANKS = 2
 #: stiffness of a bearing across its load, over that along it, that is rounding
 BARE = 1e-12
@@ -86,53 +86,64 @@ class Operating:
         for side in assembly.train.shafts:
             refuse_own_loads(assembly.train, side)
 
-    @cached_property
-    def bearings(self) -> dict[str, Catalogued]:
-        """Bearings of catalogue data, by ``side.name``."""
+    def _bearings(self, point: OperatingPoint) -> dict[str, Catalogued]:
+        """Return the bearings of catalogue data at the speeds of a point, by ``side.name``."""
         out: dict[str, Catalogued] = {}
         train = self.assembly.train
         for side, shaft in train.shafts.items():
+            speed = point.speed_of(side, train.turns)
             try:
-                shaft_bearings = catalogued_bearings(shaft.scene, self.choice)
+                shaft_bearings = catalogued_bearings(shaft.scene, self.choice, speed)
             except SceneError as error:
                 raise error.located(None, prefix=(*train.shaft_path(side), "scene")) from None
             out |= {f"{side}.{name}": catalogued for name, catalogued in shaft_bearings.items()}
         return out
 
-    @cached_property
-    def _seats(self) -> tuple[Seats, ...]:
+    def _seats(self, bearings: Mapping[str, Catalogued]) -> tuple[Seats, ...]:
         scenes = self.assembly.scenes.items()
         train, out = self.assembly.train, []
         for side, scene in scenes:
-            seats = seats_of(side, scene, self.bearings)
+            seats = seats_of(side, scene, bearings)
             ports = (housing_port(train, side, seat.port) for seat in seats.bearings)
             out.append(replace(seats, stands_in=tuple(port for port in ports if port is not None)))
         return tuple(out)
+
+    @cached_property
+    def _turning(self) -> dict[float | None, tuple[dict[str, Catalogued], tuple[Seats, ...]]]:
+        """Bearings of catalogue data and the seats with them, at the last speeds of the first shaft."""
+        return {}
 
     @cached_property
     def _meshing(self) -> dict[Hashable, OnBearings]:
         """The last trains that were put at rest, by the load or the flank on which they mesh alike."""
         return {}
 
-    def _at(self, point: OperatingPoint) -> tuple[Assembly, OnBearings]:
-        """Return the train as it meshes at an operating point, without the bearings, and the seats that
-        it rests on.
+    def _at(self, point: OperatingPoint) -> tuple[Assembly, dict[str, Catalogued], OnBearings]:
+        """Return the train as it meshes at an operating point, without the bearings, those of catalogue
+        data, and the seats that it rests on.
         """
         assembly = self.assembly.at(point, self.choice)
         alike = assembly.teeth.load_that_counts(point) or point.coast
+        turning = point.speed_of(next(iter(assembly.scenes)), assembly.train.turns)
+        if turning not in self._turning:
+            _make_room(self._turning)
+            bearings = self._bearings(point)
+            self._turning[turning] = bearings, self._seats(bearings)
+        bearings, seats = self._turning[turning]
         if alike not in self._meshing:
-            if len(self._meshing) == FLANKS:
-                del self._meshing[next(iter(self._meshing))]
+            _make_room(self._meshing)
             MeshesAtRest(assembly, self.models).begin()
             system = assembly.system(*self.models, bearings=False)
-            self._meshing[alike] = OnBearings(system, self._seats)
-        return assembly, self._meshing[alike]
+            self._meshing[alike] = OnBearings(system, seats)
+        elif self._meshing[alike].seats is not seats:
+            self._meshing[alike] = replace(self._meshing[alike], seats=seats)
+        return assembly, bearings, self._meshing[alike]
 
     def with_points(self, train: Train) -> Operating:
         """Return the same bearings on the same shafts, in a train that differs in operating points
         alone.
         """
-        _ = self._seats, self._meshing  # the same for all of them
+        _ = self._turning, self._meshing  # the same for all of them
         out = copy(self)
         out.assembly = self.assembly.with_train(train)
         return out
@@ -184,7 +195,7 @@ class Operating:
         if self.assembly.train.is_one_shaft and point.weight is None:
             (scene,) = self.assembly.scenes.values()
             point = point.with_changes(weight=scene.weight)
-        assembly, seated = self._at(point)
+        assembly, bearings, seated = self._at(point)
         forces = mesh_forces(assembly.train, assembly.contacts, point)
         loads, notes = self._loads(assembly, point, forces)
         total = seated.system.load(loads) + centrifugal_load(assembly, seated.system, point)
@@ -215,7 +226,7 @@ class Operating:
         notes += [
             f"{place}bearing {end} carries on one element, and nothing holds it across its load: "
             "motions there have no error bar"
-            for end in self.bearings
+            for end in bearings
             if end in solved.tangent and on_one_element(solved.tangent[end])
         ]
         return OperatingState(
@@ -225,7 +236,7 @@ class Operating:
             equilibrium=solved,
             assembly=assembly,
             system=seated.system,
-            bearings=self.bearings,
+            bearings=bearings,
             outside=loads,
             notes=tuple(notes),
         )
@@ -252,6 +263,12 @@ class Operating:
                 end = f"{side}.{station}"
                 loads[end] = loads.get(end, np.zeros(6)) + six
         return loads, notes
+
+
+def _make_room(kept: dict) -> None:
+    """Drop the oldest of what is kept where one more would be too many."""
+    if len(kept) == FLANKS:
+        del kept[next(iter(kept))]
 
 
 def on_one_element(tangent: np.ndarray) -> bool:

@@ -24,8 +24,8 @@ import numpy as np
 
 from solidgear.core import LADDER, SolidgearError, System, as_supports, coned, pinned
 from solidgear.core.bounds.harmonic import HarmonicBounds, harmonic_bounds, why_unbounded, with_tail
-from solidgear.core.bounds.safety import LOCAL
 from solidgear.core.judge.bounded import bounds_of, geometry_share
+from solidgear.core.safety import LOCAL
 from solidgear.core.solve.statics import flexibility
 from solidgear.core.system.system import port_forces
 from solidgear.trains.assembly.assembly import Assembly

@@ -6,7 +6,7 @@ from dataclasses import dataclass, field, replace
 
 import numpy as np
 
-from solidgear.core import BEAM, DOF_NAMES, LADDER, SolidgearError, System
+from solidgear.core import BEAM, DOF_NAMES, LADDER, SolidgearError, System, listed
 from solidgear.core.judge.at_rest import Moved
 from solidgear.core.plain import plain
 from solidgear.trains.assembly.assembly import Assembly
@@ -108,12 +108,16 @@ class TrainModes:
         lines += [*self._still(), *self.local, *filter(None, [self.turn, self.hidden])]
         bound = "Bound: largest relative error by the reduction, proven"
         if self.has_mesh_bars:
-            bound += "; mesh: error bar of the harmonic shafts' meshes, by local problems"
-            solids = {*LADDER.bodies} - {*LADDER.of(BEAM), JUDGE}
-            others = [side for side, model in self.models.items() if model in solids]
-            bound += f", and none of {' and '.join(others)}." if others else "."
+            bound += "; mesh: error bar of the harmonic shafts' meshes, by local problems."
         else:
             bound += "; it does not include the shafts' meshes."
+        solids = {*LADDER.bodies} - {*LADDER.of(BEAM), JUDGE}
+        if others := [side for side, model in self.models.items() if model in solids]:
+            models = listed([*dict.fromkeys(self.models[side] for side in others)])
+            bound += (
+                f" What the meshes of {listed(others)} leave is not known: modes of a train have no "
+                f"error bars by {models} shafts."
+            )
         lines.append(bound)
         return lines + list(self.contact) + unpublished_lines(self.unpublished)
 

@@ -10,7 +10,6 @@ from solidgear.core import (
     SolidgearError,
     Source,
     nearest,
-    number_cautions,
     read_tolerance,
     show,
 )
@@ -40,7 +39,6 @@ class Designs:
     solved: str  #: how every design is solved, in words
     unbarred: str  #: why its numbers have no error bars; empty where they have
     names: Callable[[dict[str, Any]], list[str]]  #: numbers of a row that goals may be of
-    cautions: tuple[str, ...] = ()  #: sentences on what the numbers leave out
 
     @property
     def entries(self) -> tuple[Entry, ...]:
@@ -51,11 +49,19 @@ class Designs:
         """Return a design by the labels of its entries and its rows; not a number leaves an entry as
         it is in the file.
         """
-        variants, count = self.task.variants, len(self.entries)
-        variants.values[: self.points, :count] = values
-        varied = variants.varied(0)
+        self._set(values)
+        varied = self.task.variants.varied(0)
         varied.pop(POINT, None)
-        return varied, self.task.rows(range(self.points))
+        return varied, self.task.rows(range(self.points), cautions=False)
+
+    def cautions(self, values: Sequence[float]) -> tuple[str, ...]:
+        """Return sentences on what the numbers of a design that has some leave out."""
+        self._set(values)
+        told = (text for point in range(self.points) for text in self.task.cautions_of(point))
+        return tuple(dict.fromkeys(told))
+
+    def _set(self, values: Sequence[float]) -> None:
+        self.task.variants.values[: self.points, : len(self.entries)] = values
 
 
 def scene_designs(
@@ -81,7 +87,7 @@ def scene_designs(
     ]
     _refuse_strange(names, names_at_rest)
     kinds, modes = _kinds_of_shaft(columns, names)
-    task = SceneTask(variants, model, tol, {}, modes, ask=kinds)
+    task = SceneTask(variants, model, tol, {}, modes, ask=kinds, names=tuple(names))
 
     def names_of(row: dict[str, Any]) -> list[str]:
         modes_of_row = [
@@ -89,8 +95,7 @@ def scene_designs(
         ]
         return [*names_at_rest, *modes_of_row]
 
-    cautions = tuple(number_cautions(base, dict.fromkeys(names), model or ""))
-    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of, cautions)
+    return Designs(task, base.title or base.name, 1, solved, unbarred, names_of)
 
 
 #: kinds of numbers of a shaft that have columns of their own
@@ -160,7 +165,7 @@ def train_designs(
         solved += f", at the worst of {points} operating points"
     unbarred = "none: rows of a train have no error bars"
     title = usual.title or usual.name
-    return Designs(task, title, points, solved, unbarred, _numbers_of_train, task.cautions)
+    return Designs(task, title, points, solved, unbarred, _numbers_of_train)
 
 
 def _kinds(task: TrainTask, names: Sequence[str]) -> tuple[str, ...]:

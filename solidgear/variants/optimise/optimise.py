@@ -172,6 +172,9 @@ def optimise(
     aim = Aim(pool)
     sound = [d for d in pool.designs if d.kept and d.place is not None]
     best = aim.best(sound) if sound else None
+    shown = trace.front(pool) if isinstance(trace, FrontTrace) else ()
+    shown = [*shown] or [first if best is None else best]
+    cautions = [text for design in shown for text in pool.cautions(design)]
     return Optimum(
         tried.title,
         goals=goals,
@@ -185,7 +188,7 @@ def optimise(
         most=most,
         followed=tried.task.variants.followed,
         unbarred=tried.unbarred,
-        cautions=tried.cautions,
+        cautions=tuple(dict.fromkeys(cautions)),
         solved=tried.solved,
     )
 

@@ -85,6 +85,12 @@ class Pool:
             raise EnoughDesigns
         return self._solved(self.space.values(place), place)
 
+    def cautions(self, design: Design) -> tuple[str, ...]:
+        """Return sentences on what the numbers of a design leave out."""
+        if design.place is None or not design.goals:
+            return ()
+        return self.tried.cautions(self.space.values(design.place))
+
     def _solved(self, values: Sequence[float], place: Place | None) -> Design:
         number = len(self.designs)
         self.progress(f"design {number}")

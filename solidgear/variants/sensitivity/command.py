@@ -127,7 +127,7 @@ def table(number: OfNumber, units: Units) -> Table:
 def _by_unit(derivative: Derivative, unit: str, units: Units) -> str:
     """Return a derivative by one unit of the file, to four digits with its sign."""
     value = units.value(derivative.by_unit, unit) or 0.0
-    return f"{value:+.4g} {units.unit(unit)} per {derivative.unit or '1 in SI'}"
+    return f"{value:+.4g} {units.unit(unit)} per {derivative.unit or '1'}"
 
 
 def _mesh(share: float) -> str:

@@ -28,7 +28,7 @@ from solidgear.core import TOUCH, Body, Scene, SolidgearError, coned
 from solidgear.core.kernel.assembly import reference
 from solidgear.core.meshing.bands import radial_bands
 from solidgear.core.models.beam.element import SHAPE
-from solidgear.core.models.harmonic.blocks import Work
+from solidgear.core.models.harmonic.blocks import EDGE_ENDS, Work
 from solidgear.core.models.harmonic.families import TORSION, Family, family_of
 from solidgear.core.scene.shaft import attached_stations
 from solidgear.variants.sensitivity.adjoint import (
@@ -321,8 +321,8 @@ class _States:
     def _rigid(self, p, station, forced, moved, push: Push, scale) -> None:
         """Add derivatives by a rigid seat, which takes its nodes along as they lie about the port."""
         work, flat = self.work, self.adjoint.flat
-        cells = work.seat_cells(station)
-        nodes = np.unique(flat.cells[[1, 2]][:, cells])
+        cells, direction, value = work.side(station, "rigid")
+        nodes = np.unique(flat.cells[list(EDGE_ENDS[direction, value])][:, cells])
         corner = {int(n): int(d) for n, d in zip(flat.cells.ravel(), work.dofs[:4].ravel())}
         forces = self.residual[[corner[int(n)] for n in nodes]][..., forced]
         push.nodes[1][nodes] -= scale * forces[:, 0] * moved[1]

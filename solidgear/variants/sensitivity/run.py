@@ -7,7 +7,7 @@ bearings and masses are multiplied by the sensitivities of the numbers to them.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar
 
@@ -212,21 +212,26 @@ def sensitivities(
     levels: list[dict[str, Any]] = [{}]
     if coarser and model != "solid":
         levels.append(_coarser(scene, model, options))
-    meshes = []
-    for level in levels:
-        mesh = f" ({_mesh_words(level)})" if level else ""
-        progress(f"{scene.name}: {model}{mesh}")
-        meshes.append(SolvedMesh(scene, model, quantities, {**options, **level}))
-    rows: list[list[Derivative]] = [[] for _ in quantities]
+    by_path: dict[str, Around] = {}
     without: dict[str, str] = {}
     for keys in moves:
         path = label_of(keys, tables)
         try:
-            sides = around(scene, tables, keys, where)
-            fine, *coarse = [m.by(sides.low, sides.high, sides.step).tolist() for m in meshes]
+            by_path[path] = around(scene, tables, keys, where)
         except SolidgearError as error:
             without[path] = _reason(error)
+    meshes = []
+    for level in levels:
+        mesh = f" ({_mesh_words(level)})" if level else ""
+        progress(f"{scene.name}: {model}{mesh}")
+        solved = SolvedMesh(scene, model, quantities, {**options, **level})
+        meshes.append(solved.along(by_path, without))
+        del solved  # before the next one takes as much
+    rows: list[list[Derivative]] = [[] for _ in quantities]
+    for path, sides in by_path.items():
+        if path in without:
             continue
+        fine, *coarse = [mesh.by[path] for mesh in meshes]
         for k, value in enumerate(meshes[0].values):
             scale = sides.at / value
             rows[k].append(
@@ -334,6 +339,27 @@ class SolvedMesh:
             self.forms.append(form)
             self.pairs.append(False)
         self.by = Derivatives(scene, self.body, self.forms, model, options).by
+
+    def along(self, by_path: Mapping[str, Around], without: dict[str, str]) -> OnMesh:
+        """Return the numbers and their derivatives by entries without the mesh; what has none goes to
+        `without`, with the reason.
+        """
+        by = {}
+        for path, sides in by_path.items():
+            try:
+                by[path] = self.by(sides.low, sides.high, sides.step).tolist()
+            except SolidgearError as error:
+                without[path] = _reason(error)
+        return OnMesh(self.values, self.pairs, by)
+
+
+@dataclass(frozen=True)
+class OnMesh:
+    """Numbers of a scene on one mesh, and their derivatives by the paths of entries."""
+
+    values: list[float]
+    pairs: list[bool]  #: whether each is of a pair of modes
+    by: dict[str, list[float]]  #: SI over SI
 
 
 def _notes(scene: Scene, levels: list[dict], of: Sequence[OfNumber]) -> Iterator[str]:

@@ -182,7 +182,7 @@ def entries_of(
         try:
             places = _places(path, files, owner)
             in_file = entry(places[0].keys, files[places[0].file])
-            as_text = _has_words(places, in_file)
+            as_text = _has_words(places, in_file, re.split("[,:]", spec))
             if as_text or ":" not in spec:
                 values = _listed(spec.split(","), as_text)
             else:
@@ -221,7 +221,7 @@ def entries_of_table(
         except SceneError as error:
             raise SolidgearError(f"`table` {path}: {head}: {error}") from None
         cells = [row[k].strip() if k < len(row) else "" for row in rows]
-        as_text = _has_words(places, in_file)
+        as_text = _has_words(places, in_file, cells)
         values = _listed([cell for cell in cells if cell], as_text)
         out.append(_entry(places, in_file, as_text, values))
         _refuse_twice(f"`table` {path}", out)
@@ -416,10 +416,13 @@ def _range(spec: str, whole_key: bool, search: bool) -> dict[str, Any]:
     }
 
 
-def _has_words(places: Sequence[Place], in_file: object) -> bool:
-    """True for an entry of words, by the format of files or by the value in the file."""
+def _has_words(places: Sequence[Place], in_file: object, cells: Iterable[str]) -> bool:
+    """True for an entry of words, by the format of files or by the value in the file, in whose place
+    no number is given: a mesh stiffness is one or ``teeth``.
+    """
     word_in_file = isinstance(in_file, str) and in_si(in_file) is None
-    return word_in_file or any(is_text(place.keys) for place in places)
+    numbers = (in_si(plain_number(cell.strip())) is not None for cell in cells)
+    return (word_in_file and not any(numbers)) or any(is_text(place.keys) for place in places)
 
 
 def _listed(cells: Iterable[str], as_text: bool) -> dict[str, Any]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import re
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, KeysView, Mapping, Sequence
@@ -27,6 +28,8 @@ from solidgear.variants.sweep.rows import RowFile
 #: columns of rows: the largest relative error that a reduction leaves in natural frequencies, and
 #: words on all other error bars
 BOUND, BARS = "reduction_bound", "about_bars"
+#: column of the sentences to be read before a row is used, and what parts them
+CAUTIONS, AND = "cautions", " | "
 
 #: called with the number of rows that are there, of rows in all, and the present step
 Progress = Callable[[int, int, str], None]
@@ -53,6 +56,8 @@ def without_bars(model: str) -> str:
 #: result of a task
 R = TypeVar("R")
 Rows = list[dict[str, Any]]
+#: numbers in a sentence
+NUMBERS = re.compile(r"[-+]?\d[\d.,e+-]*")
 
 
 class Task(Generic[R]):
@@ -84,19 +89,26 @@ class Task(Generic[R]):
         raise NotImplementedError
 
     @pinned
-    def rows(self, indices: Iterable[int]) -> Rows:
-        """Return the rows of some variants; what their bodies took goes back to the system."""
-        rows = [self._row(index) for index in indices]
+    def rows(self, indices: Iterable[int], cautions: bool = True) -> Rows:
+        """Return the rows of some variants, with their cautions unless these are asked for elsewhere;
+        what their bodies took goes back to the system.
+        """
+        rows = [self._row(index, cautions) for index in indices]
         give_back()  # a process would keep the holes that they leave, some 20 MB a harmonic row
         return rows
 
-    def _row(self, index: int) -> dict[str, Any]:
+    def _row(self, index: int, cautions: bool) -> dict[str, Any]:
         row: dict[str, Any] = {"variant": index, **self.variants.varied(index)}
         try:
             numbers = self.numbers(index)
+            told = AND.join(self.cautions_of(index)) if cautions else ""
         except SolidgearError as error:
             return row | {"status": self.variants.status(error, index)}
-        return row | {"status": "ok"} | numbers
+        return row | {"status": "ok"} | numbers | ({CAUTIONS: told} if told else {})
+
+    def cautions_of(self, index: int) -> Sequence[str]:
+        """Return the sentences to be read before the numbers of a variant that has some are used."""
+        return ()
 
     def checked(self, row: dict[str, Any]) -> dict[str, Any]:
         """Return a row of any process as it goes into the file, in this process."""
@@ -150,8 +162,6 @@ class Swept(Sheeted):
     path: Path  #: file that they were written to; of a sweep from Python without one it is gone
     skipped: int  #: rows that were there before
     seconds: float  #: wall seconds of this run
-    #: sentences on data that contradict each other in variants that were solved
-    cautions: tuple[str, ...] = ()
     task: Task[Any]  #: what solved the variants
     alone: bool  #: no other process solved any
 
@@ -187,14 +197,28 @@ class Swept(Sheeted):
         """Number of variants that have no numbers."""
         return sum(self.whys.values())
 
+    @property
+    def cautions(self) -> tuple[str, ...]:
+        """Sentences to be read before numbers of rows are used, that of the first row of those that
+        differ by numbers alone, each with the rows that have it unless all do.
+        """
+        solved = [row for row in self.rows if row["status"] == "ok"]
+        told: dict[str, list[tuple[int, str]]] = {}
+        for row in solved:
+            for sentence in filter(None, (row.get(CAUTIONS) or "").split(AND)):
+                kind = NUMBERS.sub("#", sentence)
+                told.setdefault(kind, []).append((row["variant"], sentence))
+        return tuple(
+            sentences[0][1]
+            if len(sentences) == len(solved) and len({text for _, text in sentences}) == 1
+            else f"{sentences[0][1]} (variant {sentences[0][0]}; alike in {len(sentences)} of "
+            f"{self.total} rows, column {CAUTIONS})"
+            for sentences in told.values()
+        )
+
 
 class FileTask(Task[Swept]):
     """Turns variants of files, each solved by itself, into rows."""
-
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """Sentences on data that contradict each other in variants that can be solved."""
-        return ()
 
     @property
     def misalignments(self) -> tuple[str, ...]:
@@ -222,7 +246,6 @@ class FileTask(Task[Swept]):
             path=file.path,
             skipped=skipped,
             seconds=sum(seconds),
-            cautions=self.cautions,
             task=self,
             alone=alone,
         )

@@ -26,7 +26,7 @@ from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of, one_shaft
 from solidgear.variants.sweep.bench import surface
 from solidgear.variants.sweep.design import Design
-from solidgear.variants.sweep.file_task import BARS, FileTask, named_kinds, without_bars
+from solidgear.variants.sweep.file_task import BARS, CAUTIONS, FileTask, named_kinds, without_bars
 from solidgear.variants.sweep.file_variants import (
     MAIN,
     SceneVariants,
@@ -63,17 +63,17 @@ class SceneTask(FileTask):
     n: int  #: natural frequencies
     first: int = 0  #: a variant that can be read
     ask: tuple[str, ...] = (ANSWER,)  #: some of ``ASKED``
+    names: tuple[str, ...] = ()  #: of the numbers that cautions are of; all of the rows by default
 
     @cached_property
     def _last(self) -> dict[Any, Settled]:
         """Mesh of the last row, by its shaft."""
         return {}
 
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """Sentences to be read before the numbers of rows are used, by the first variant."""
+    def cautions_of(self, index: int) -> list[str]:
         numbers = SHOWN if ANSWER in self.ask else AT_REST
-        return tuple(number_cautions(self.variants.variant(self.first), numbers, self.model or ""))
+        numbers = dict.fromkeys(self.names) if self.names else numbers
+        return number_cautions(self.variants.variant(index), numbers, self.model or "")
 
     @property
     def columns(self) -> dict[str, type]:
@@ -87,7 +87,7 @@ class SceneTask(FileTask):
         if {*self.ask} - {ANSWER}:
             usual = self.variants.variant(self.first)
             out |= columns_of(usual, self.ask, barred=self.model is None)
-        return out
+        return out | {CAUTIONS: str}
 
     def _with_bar(self, name: str, kind: type) -> dict[str, type]:
         return {name: kind} | ({f"{name} bar": float} if self.model is None else {})

@@ -6,7 +6,9 @@ import math
 from collections.abc import Sequence
 from typing import Any
 
-from solidgear.bearings.duty import LivesOverPoints
+from solidgear.bearings.duty import LivesOverPoints, PointLife
+from solidgear.bearings.solved import wants_equilibrium
+from solidgear.bearings.study import bearing_facts
 from solidgear.core import Scene, SolidgearError
 from solidgear.core.ladder import solid_of
 from solidgear.strength.deflection.at_rest import Measured, deflections
@@ -16,6 +18,7 @@ from solidgear.strength.stress.notch_tables import not_rated
 from solidgear.strength.stress.rating import Rating
 from solidgear.trains.assembly.assembly import NO_MODES, Assembly
 from solidgear.trains.file.operation import OperatingPoint
+from solidgear.trains.file.train import ALONE
 from solidgear.trains.load.lives import lives_in
 from solidgear.trains.load.operation import Operating
 from solidgear.trains.load.state import OperatingState
@@ -120,8 +123,12 @@ def _across(pair: Sequence[Measured]) -> tuple[float, float | None]:
 
 def _lives(assembly: Assembly, model: str | None) -> list[LivesOverPoints]:
     """Return the life of every catalogue bearing of a shaft in all cases of its loads, by default on
-    the model that deflection trusts.
+    the model that deflection trusts; under their own loads where none waits for that of the shaft.
     """
+    scene = assembly.train.shafts[ALONE].scene
+    if not wants_equilibrium(scene):
+        lives = [fact.life for fact in bearing_facts(scene)]
+        return [LivesOverPoints(life.name, (PointLife("", life),)) for life in lives]
     operating = Operating(assembly.settling(model), model) if model else Operating(assembly)
     states = list[OperatingState]()
     for point in _points(assembly):

@@ -6,15 +6,15 @@ by; neither changes with the shapes of flanks.  Both are kept while rows have th
 
 from __future__ import annotations
 
-from collections.abc import Hashable
+from collections.abc import Hashable, Iterable
 from typing import Any
 
 import numpy as np
 
 from solidgear.teeth.contact.cylindrical import CylindricalPair
-from solidgear.teeth.study import touching
+from solidgear.teeth.mesh_contact import SolvedMesh
 from solidgear.teeth.supports import Carried, on_beams, with_sections
-from solidgear.teeth.train_teeth import solved_mesh, with_teeth
+from solidgear.teeth.train_teeth import with_teeth
 from solidgear.trains.assembly.assembly import Assembly
 from solidgear.trains.assembly.mesh_stiffness import with_usual_meshes
 from solidgear.trains.file.operation import OperatingPoint
@@ -49,11 +49,11 @@ def of_mesh(number: str, mesh: str) -> str:
     return f"{number}{mesh.removeprefix('mesh').replace(' ', '_')}"
 
 
-def tooth_numbers(carried: Carried, train: Train) -> dict[str, float]:
-    """Return the numbers of all meshes of a train where it is carried, by column, SI."""
+def tooth_numbers(meshes: Iterable[SolvedMesh]) -> dict[str, float]:
+    """Return the numbers of meshes of a train where it is carried, by column, SI."""
     out: dict[str, float] = {}
-    for mesh in touching(train):
-        cycle = solved_mesh(carried, mesh).cycle
+    for mesh in meshes:
+        cycle = mesh.cycle
         numbers = {
             ERROR: cycle.peak_to_peak,
             **dict(zip(ERROR_ORDERS, np.abs(cycle.orders(ORDERS)).tolist())),

@@ -18,6 +18,7 @@ from solidgear.core.loading import MESH
 from solidgear.core.models.limits import number
 from solidgear.guards.one_shaft import mass_of
 from solidgear.strength.deflection.misalignment import measured_names, misalignment
+from solidgear.teeth.mesh_contact import SolvedMesh
 from solidgear.teeth.study import touching
 from solidgear.teeth.train_teeth import solved_mesh, with_teeth
 from solidgear.trains.assembly.assembly import KEPT, NO_MODES, Assembly
@@ -37,7 +38,7 @@ from solidgear.variants.sweep.bench import Bench
 from solidgear.variants.sweep.curves import force_of, misaligned
 from solidgear.variants.sweep.design import Design
 from solidgear.variants.sweep.error_curves import over_torque
-from solidgear.variants.sweep.file_task import BARS, BOUND, FileTask, named_kinds
+from solidgear.variants.sweep.file_task import BARS, BOUND, CAUTIONS, FileTask, named_kinds
 from solidgear.variants.sweep.file_variants import tables_for_plan
 from solidgear.variants.sweep.life_numbers import life_columns, life_numbers
 from solidgear.variants.sweep.tooth_numbers import TOOTH_UNITS, TeethBench, of_mesh, tooth_numbers
@@ -112,17 +113,18 @@ class TrainTask(FileTask):
         if not (self.meshes_in_contact and over_torque(self.variants)):
             super().refuse_chart()
 
-    @property
-    def cautions(self) -> tuple[str, ...]:
-        """Sentences to be read before the numbers of rows are used, by the first variant."""
-        train, of_contact = self.usual, list[str]()
-        point = self.variants.operating_point(self.first, train)
+    @cached_property
+    def _in_contact(self) -> dict[int, list[SolvedMesh]]:
+        """Meshes of the last row whose teeth were solved, by its variant."""
+        return {}
+
+    def cautions_of(self, index: int) -> tuple[str, ...]:
+        train, of_contact = self.variants.variant(index), list[str]()
+        point = self.variants.operating_point(index, train)
         if point is not None and point.torque and (CONTACT in self.ask or asks_for_teeth(train)):
-            key = self.variants.beside_flanks(self.first)
-            carried = self.teeth.carried(key, train, point)
-            if CONTACT in self.ask:
-                meshes = (solved_mesh(carried, mesh) for mesh in touching(train))
-                of_contact += (text for mesh in meshes for text in mesh.cautions)
+            carried = self.teeth.carried(self.variants.beside_flanks(index), train, point)
+            meshes = self._in_contact.get(index, ())
+            of_contact += (text for mesh in meshes for text in mesh.cautions)
             train = with_teeth(train, carried)
         cautions = Assembly(train).cautions_at_rest(*self.models.values())
         return tuple(dict.fromkeys((*cautions, *of_contact)))
@@ -153,7 +155,7 @@ class TrainTask(FileTask):
             for k in range(1, PEAKS + 1):
                 out |= {f"peak{k}_hz": float, f"peak{k}_force": float, f"peak{k}_mode": str}
             out |= {PARTS: float} if train.operation else {}
-        return out | {MASS: float, BARS: str}
+        return out | {MASS: float, BARS: str, CAUTIONS: str}
 
     @property
     def without_bars(self) -> str:
@@ -221,7 +223,11 @@ class TrainTask(FileTask):
         if not (CONTACT in self.ask or asks_for_teeth(train)):
             return self._settled(key, train, point)
         carried = self.teeth.carried(key, train, point)
-        of_teeth = tooth_numbers(carried, train) if CONTACT in self.ask else {}
+        of_teeth = {}
+        if CONTACT in self.ask:
+            self._in_contact.clear()
+            self._in_contact[index] = [solved_mesh(carried, mesh) for mesh in touching(train)]
+            of_teeth = tooth_numbers(self._in_contact[index])
         if self.ask == (CONTACT,):
             at_rest = carried.assembly.train
             return at_rest, of_teeth | _loads(carried.state, at_rest)

@@ -26,7 +26,7 @@ from typing import Any
 
 import solidgear as sg
 from solidgear.core.body import as_supports
-from solidgear.core.bounds.narrow import RIGID
+from solidgear.core.bounds.singular_places import sharpest_exponent
 from solidgear.core.judge.quantities import size
 from solidgear.core.judge.solving import Answer, answer_of_body, solve
 from solidgear.core.ladder.registry import LADDER
@@ -198,7 +198,7 @@ def _of_sectors(scene: sg.Scene) -> Numbers:
 def extrapolated(scene: sg.Scene, found: list[tuple[dict[str, float], float]]) -> Numbers:
     """The truth from numbers and sizes of cells of three sectors, coarse to fine."""
     plain = numbers(solve(scene.plain, "harmonic", **PLAIN))
-    order = 2 * min(SHOULDER, *(RIGID for s in scene.stations if s.attachment == "rigid"), 1.0)
+    order = 2 * min(SHOULDER, sharpest_exponent(scene))
     ahead = 1 / ((found[-2][1] / found[-1][1]) ** order - 1)
     values, doubt, effect = {}, {}, {}
     for q in (q for q in found[-1][0] if all(q in own for own, _ in found)):

@@ -22,13 +22,13 @@ from skfem import ElementQuad1
 
 from solidgear.core.body import Block
 from solidgear.core.body.sections import Sections, hats, through
-from solidgear.core.errors import SolidgearError
 from solidgear.core.kernel.assembly import Pattern, Tabulated, Tabulation, batches
 from solidgear.core.kernel.attachment import Attached, reduced, with_ports
 from solidgear.core.kernel.cell_shapes import Shapes
-from solidgear.core.kernel.lobatto import gauss, gauss_box
+from solidgear.core.meshing.lobatto import gauss, gauss_box
 from solidgear.core.models.harmonic.families import TORSION, Family, family_of
 from solidgear.core.models.harmonic.mesh import HarmonicMesh
+from solidgear.core.scene.shaft import on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene.shaft import Shaft
@@ -37,7 +37,7 @@ if TYPE_CHECKING:
 #: element of the mapping of straight cells
 CORNERS = ElementQuad1()
 #: corners at the ends of the local edge where a coordinate has a value
-_ENDS = {(0, 1.0): (1, 2), (1, 1.0): (3, 2), (1, 0.0): (0, 1)}
+EDGE_ENDS = {(0, 1.0): (1, 2), (1, 1.0): (3, 2), (1, 0.0): (0, 1)}
 
 
 def _functions(t: Tabulated, weight: np.ndarray, around: bool) -> np.ndarray:
@@ -178,7 +178,7 @@ class Work:
     def _seat_unknowns(self, station, c: int) -> np.ndarray:
         """Return the mask of the unknowns on a seat, so many at each node."""
         seat = np.zeros((self.n, c), bool)
-        seat[self.geometry.edge_unknowns(self.seat_cells(station), 0, 1.0)] = True
+        seat[self.geometry.edge_unknowns(*self.side(station, "rigid"))] = True
         return seat.ravel()
 
     def _clamped(self, block: Block, seats) -> Block:
@@ -223,26 +223,29 @@ class Work:
             self._edges[direction, value] = Tabulation(CORNERS, self.element, points)
         return self._edges[direction, value].on(self.flat.points[:, self.flat.cells[:, cells]])
 
-    def surface(self, station, attachment):
+    def side(self, station, attachment: str) -> tuple[np.ndarray, int, float]:
+        """Return the cells with an edge on a seat, an end face or a section, and the direction and the
+        value of the coordinate that is the same along it.
+        """
+        if attachment != "section" and not on_face(station):
+            return self.seat_cells(station), 0, 1.0
+        distance = np.abs(self.flat.points[1][self.flat.cells] - station.y)
+        tol = 1e-9 * self.scene.length
+        # of cells beside a fillet a single corner may lie in the plane
+        cells = np.flatnonzero((distance[2:] < tol).all(axis=0))
+        if len(cells):
+            return cells, 1, 1.0
+        # a section at the very start
+        return np.flatnonzero((distance[:2] < tol).all(axis=0)), 1, 0.0
+
+    def surface(self, station, attachment: str):
         """Return basis values (nb, q), r, y - y0, length weights (e, q) and unknowns on a seat or a
         section; its cells, and their corners at both ends of it.
         """
-        if attachment == "average":
-            cells, direction, value = self.seat_cells(station), 0, 1.0
-        elif attachment == "section":
-            distance = np.abs(self.flat.points[1][self.flat.cells] - station.y)
-            tol = 1e-9 * self.scene.length
-            # of cells beside a fillet a single corner may lie in the plane
-            cells, direction, value = np.flatnonzero((distance[2:] < tol).all(axis=0)), 1, 1.0
-            if not len(cells):  # a section at the very start
-                cells, value = np.flatnonzero((distance[:2] < tol).all(axis=0)), 0.0
-        else:
-            raise SolidgearError(
-                f"attachment {attachment!r} is unknown; use 'average', 'rigid' or 'section'"
-            )
+        cells, direction, value = self.side(station, attachment)
         t = self.on_edge(cells, direction, value)
         weight = np.linalg.norm(t.tangent[:, :, :, 1 - direction], axis=2) * self.gw
-        ends = _ENDS[direction, value]
+        ends = EDGE_ENDS[direction, value]
         return t.value, t.x[0], t.x[1] - station.y, weight, self.dofs[:, cells], cells, ends
 
     def mean(self, family: Family, station, attachment) -> np.ndarray:

@@ -24,7 +24,7 @@ from solidgear.core.body.model import Enrichment
 from solidgear.core.body.symmetric import Symmetric
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import Tabulation, unknowns
-from solidgear.core.kernel.lobatto import gauss_box
+from solidgear.core.meshing.lobatto import gauss_box
 from solidgear.core.models.solid.images import Images, images_of, of_vectors, orbits
 from solidgear.core.models.solid.matrices import _cell_rule, integrals, rigid_part, weighed
 from solidgear.core.models.solid.mesh import SolidMesh

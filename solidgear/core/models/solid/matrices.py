@@ -15,7 +15,7 @@ from solidgear.core.body.mass import ScalarMass
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.frames import cross_matrix, on_axis
 from solidgear.core.kernel.assembly import Pattern, Sum, Tabulation, batches, inverted, straight
-from solidgear.core.kernel.lobatto import gauss_box
+from solidgear.core.meshing.lobatto import gauss_box
 from solidgear.core.models.solid.images import Images, orbits
 from solidgear.core.models.solid.mesh import SolidMesh
 

@@ -17,9 +17,10 @@ from solidgear.core.body.surface import PIECES as PIECES_OF_EDGE
 from solidgear.core.body.surface import Surface, Volume
 from solidgear.core.elements import ELEMENTS
 from solidgear.core.kernel.assembly import reference, tabulate, unknowns
-from solidgear.core.kernel.lobatto import gauss_box
 from solidgear.core.meshing.geometry import moments_of_cells
+from solidgear.core.meshing.lobatto import gauss_box
 from solidgear.core.models.solid.drawing import Outline, face_grid, on_faces
+from solidgear.core.scene.shaft import on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene.outline import Outline as ShaftOutline
@@ -197,7 +198,9 @@ class SolidMesh:
         return np.unique(np.concatenate(unknown_parts))
 
     def seat(self, station, segments, tol: float) -> np.ndarray:
-        """Return the facets of the outer lateral surface between the ends of a seat."""
+        """Return the facets of the outer lateral surface between the ends of a seat, or of a face."""
+        if on_face(station):
+            return self.section(station.y, tol)
         p = self.mesh.p[:, self.mesh.facets[:, self.boundary]]
         y, r = p[1], np.hypot(p[0], p[2])
         inside = (y.min(axis=0) >= station.lo - tol) & (y.max(axis=0) <= station.hi + tol)

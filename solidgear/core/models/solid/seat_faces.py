@@ -20,6 +20,7 @@ from scipy.sparse.csgraph import connected_components
 from solidgear.core.errors import SolidgearError
 from solidgear.core.models.solid.block import BEYOND, chords, edges_of
 from solidgear.core.models.solid.mesh import SolidMesh
+from solidgear.core.scene.shaft import on_face
 
 if TYPE_CHECKING:
     from solidgear.core.scene.parts import Segment
@@ -53,7 +54,7 @@ class Seats:
         that were meant to be on its seat and are not: their corners are, or all but are, and they
         are no plane floor of a feature.
         """
-        if attachment == "section":
+        if attachment == "section" or on_face(station):
             section = self.mesh.section(station.y, 1e-7 * self.length)
             if not len(section):
                 raise SolidgearError(

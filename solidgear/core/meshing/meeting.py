@@ -7,17 +7,16 @@ from dataclasses import dataclass
 from math import atan2, cos, pi
 from typing import TYPE_CHECKING, NamedTuple
 
-from solidgear.core.bounds.wedge import Wedge, wedge_exponent
+from solidgear.core.meshing.wedge import SAME_ANGLE, Wedge, wedge_exponent
+from solidgear.core.safety import RESOLVED
+from solidgear.core.scene.shaft import on_face
 
 if TYPE_CHECKING:
-    from solidgear.core.scene import Scene
     from solidgear.core.scene.parts import Material, Segment
     from solidgear.core.scene.shaft import Station
 
-#: shares of the length of a shaft within which points are one, and angles, rad, that are
-SAME, SAME_ANGLE = 1e-9, 1e-9
-#: least side of a cell, in distances within which points are one
-RESOLVED = 4.0
+#: share of the length of a shaft within which points are one
+SAME = 1e-9
 
 
 def least_side(length: float) -> float:
@@ -46,32 +45,42 @@ class Meeting:
     def exponent(self) -> float:
         """Exponent of displacement there, one at most: the less, the sharper."""
         faces = sum(self.held)
-        if not faces and not self.joined and self.angle <= pi + SAME_ANGLE:
-            return 1.0
         turned = self.held == (False, True)
         return wedge_exponent(self.wedges[::-1] if turned else self.wedges, faces)
 
 
-def meeting(scene: Scene, y: float, r: float, rigid: Iterable[Station]) -> Meeting | None:
-    """Return what meets at a point (m) of the surface of a scene, with the seats of some stations
-    rigid; None where no surface is.
+def meeting(
+    segments: Sequence[Segment], y: float, r: float, rigid: Iterable[Station] = ()
+) -> Meeting | None:
+    """Return what meets at a point (m) of the surface of segments end to end, with the seats and end
+    faces of some stations rigid; None where no surface is.
     """
-    tol = SAME * scene.length
-    sectors = [s for s in (_sector(segment, y, r, tol) for segment in scene.segments) if s]
+    tol = SAME * (segments[-1].y1 - segments[0].y0)
+    sectors = [s for s in (_sector(segment, y, r, tol) for segment in segments) if s]
     first = next((s for s in sectors if not any(_touch(other, s) for other in sectors)), None)
     if first is None:
         return None  # all around is material
     row = [first]
     while following := next((s for s in sectors if _touch(row[-1], s)), None):
         row.append(following)
-    seats = [(s.lo, s.hi) for s in rigid]
-    # the surface outside goes on towards smaller y before the first wedge, and beyond the last one
-    before, after = cos(row[0].start) < -SAME_ANGLE, cos(row[-1].end) > SAME_ANGLE
+    # of the surface that goes on before the first wedge and beyond the last one: along the outer
+    # surface, across the axis, or along a bore
+    before, after = -cos(row[0].start), cos(row[-1].end)
+    seats = list(rigid)
     held = (
-        before and any(lo < y - tol and y <= hi + tol for lo, hi in seats),
-        after and any(lo - tol <= y and y + tol < hi for lo, hi in seats),
+        any(_holds(seat, y, y - seat.lo, before, tol) for seat in seats),
+        any(_holds(seat, y, seat.hi - y, after, tol) for seat in seats),
     )
-    return Meeting(tuple(_merged(row)), held)
+    return Meeting(tuple(merged((end - start, material) for start, end, material in row)), held)
+
+
+def _holds(seat: Station, y: float, reach: float, along: float, tol: float) -> bool:
+    """Return whether a seat or an end face holds the surface that goes on from a point at y with a
+    direction along the axis, by how far it reaches that way, m.
+    """
+    if abs(along) <= SAME_ANGLE:
+        return on_face(seat) and abs(seat.y - y) <= tol
+    return along > 0 and reach > tol and seat.lo - tol <= y <= seat.hi + tol
 
 
 class _Sector(NamedTuple):
@@ -112,11 +121,10 @@ def _touch(first: _Sector, second: _Sector) -> bool:
     return abs((second.start - first.end + pi) % (2 * pi) - pi) < SAME_ANGLE
 
 
-def _merged(row: Sequence[_Sector]) -> list[Wedge]:
-    """Return sectors side by side as wedges, of one elasticity as one."""
+def merged(row: Iterable[Wedge]) -> list[Wedge]:
+    """Return wedges side by side, those of one elasticity as one."""
     wedges: list[Wedge] = []
-    for start, end, material in row:
-        angle = end - start
+    for angle, material in row:
         if wedges and _elasticity(wedges[-1][1]) == _elasticity(material):
             angle += wedges.pop()[0]
         wedges.append((angle, material))

@@ -13,26 +13,30 @@ Mech. 38, 377).
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Sequence
 from functools import lru_cache
+from math import pi
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from solidgear.core.kernel.lobatto import gauss, lobatto
+from solidgear.core.meshing.lobatto import gauss, lobatto
 
 if TYPE_CHECKING:
     from solidgear.core.scene.parts import Material
 
 #: order of the polynomials along a wedge
 ORDER = 12
+#: angles, rad, that differ by less are one
+SAME_ANGLE = 1e-9
 #: angle of a wedge, rad, and its material
 Wedge = tuple[float, "Material"]
 
 
-def wedge_exponent(wedges: Sequence[Wedge], held: int = 0) -> float:
+def wedge_exponent(wedges: Sequence[Wedge], held: int = 0, closed: bool = False) -> float:
     """Return the least exponent of displacement, its real part, at the tip of wedges side by side; one
-    at most. Of the two outer faces none, the first or both are held, by one rigid body.
+    at most. Of the two outer faces none, the first or both are held, by one rigid body; of wedges all
+    around, `closed`, there are none.
 
     Examples
     --------
@@ -47,17 +51,19 @@ def wedge_exponent(wedges: Sequence[Wedge], held: int = 0) -> float:
     >>> round(wedge_exponent([(0.5 * np.pi, rubber), (0.5 * np.pi, steel)], held=1), 3)
     0.058
     """
+    if len(wedges) == 1 and not held and wedges[0][0] <= pi + SAME_ANGLE:
+        return 1.0
     stiff = max(material.E for _, material in wedges)
     plain = tuple((round(float(a), 9), float(m.E / stiff), float(m.nu)) for a, m in wedges)
-    return _exponent(plain, held)
+    return _exponent(plain, held, closed)
 
 
 @lru_cache(maxsize=256)
-def _exponent(wedges: tuple[tuple[float, float, float], ...], held: int) -> float:
-    roots = [
-        _exponents(_matrices([(angle, law(e, nu)) for angle, e, nu in wedges], count), count, held)
-        for law, count in LAWS
-    ]
+def _exponent(wedges: tuple[tuple[float, float, float], ...], held: int, closed: bool) -> float:
+    roots = []
+    for law, count in LAWS:
+        laws = [(angle, law(e, nu)) for angle, e, nu in wedges]
+        roots.append(_exponents(_matrices(laws, count, closed), count, held))
     return float(min(*np.concatenate(roots), 1.0))
 
 
@@ -101,10 +107,11 @@ def _across(e: float, nu: float) -> _Law:
 LAWS: tuple[tuple[Callable[[float, float], _Law], int], ...] = ((_plane, 2), (_across, 1))
 
 
-def _matrices(wedges: Iterable[tuple[float, _Law]], components: int) -> _Matrices:
+def _matrices(
+    wedges: Sequence[tuple[float, _Law]], components: int, closed: bool = False
+) -> _Matrices:
     """Return M, C and K of wedges, unknowns by places along the angle."""
-    wedges = list(wedges)
-    size = components * (ORDER * len(wedges) + 1)
+    size = components * (ORDER * len(wedges) + (not closed))
     m, c, k = (np.zeros((size, size)) for _ in range(3))
     points, weights = gauss(ORDER + 2)
     value, slope = lobatto(ORDER, points)
@@ -114,8 +121,8 @@ def _matrices(wedges: Iterable[tuple[float, _Law]], components: int) -> _Matrice
         steady = (by_value + by_slope).reshape(len(points), len(elasticity), -1)
         rising = np.einsum("qn,sc->qsnc", value, growing).reshape(steady.shape)
         # both outer faces first
-        faces = [0, *range(2, len(wedges) + 1), 1]
-        inside = len(wedges) + 1 + (ORDER - 1) * n + np.arange(ORDER - 1)
+        faces = [*range(len(wedges)), 0] if closed else [0, *range(2, len(wedges) + 1), 1]
+        inside = len(set(faces)) + (ORDER - 1) * n + np.arange(ORDER - 1)
         places = np.r_[faces[n], faces[n + 1], inside]
         rows = (components * places[:, None] + np.arange(components)).ravel()
         for matrix, left, right in ((m, rising, rising), (c, steady, rising), (k, steady, steady)):
