@@ -2,7 +2,9 @@
 solved beyond.
 """
 
+import json
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -12,14 +14,20 @@ import solidgear as sg
 from solidgear.core.body import as_supports
 from solidgear.core.bounds.clusters import lower_ends
 from solidgear.core.judge import bounded
+from solidgear.core.judge import settle as settling
 from solidgear.core.judge.bounded import NOTHING_BEYOND, mode_bars
 from solidgear.core.judge.hidden import COMPLETE, complete_list
+from solidgear.core.judge.settle import settle
+from solidgear.core.quantity import Quantity
 from solidgear.core.safety import ROOM
 from solidgear.core.scene import Bearing, Port, Scene
+from solidgear.core.solve import groups
 from tests.shafts import shaft
 
 COARSE = {"order": 3, "layers": 0, "edge_layers": 0, "relative_size": 4.0}
 FINE = {**COARSE, "order": 7}
+PAD = Path(__file__).parent / "found/parts/rubber_pad_block.toml"
+PLATE = '[[port]]\nname = "top"\n'
 
 
 def solved(eigenvalues, size, count, seed=3):
@@ -141,6 +149,64 @@ def test_a_cluster_beyond_which_nothing_is_found_has_no_bar(webs, monkeypatch):
     names = [m.name for m in found.modes if m.name.startswith("ovalising n=2")]
     assert len(names) == 2 and not bars.keys() & names and "bending 1" in bars
     assert "shapes" in NOTHING_BEYOND
+
+
+def pad(folder, top=PLATE):
+    """The scene of a layer of rubber, 5 mm thick, on a clamped foot and under a plate without mass."""
+    path, text = folder / "pad.toml", PAD.read_text()
+    assert PLATE in text
+    path.write_text(text.replace("100 mm", "50 mm").replace(PLATE, top))
+    return path
+
+
+@pytest.fixture
+def few_shapes(monkeypatch):
+    """As many shapes are searched for as a quarter of the area has, and meshes end early."""
+    monkeypatch.setattr(groups, "MOST_SHAPES", 40)
+    monkeypatch.setattr(bounded, "MOST_SHAPES", 40)
+    monkeypatch.setattr(settling, "REFINEMENTS", (0.5, 0.7))
+
+
+def test_modes_below_those_of_a_thin_layer_have_bars_that_hold(tmp_path, few_shapes, run):
+    """Shear of the layer as a whole, and from twice its frequency on shear between its faces, in waves
+    of any length: modes without end, of which two on a coarse mesh are off by more than they lie apart.
+
+    Frequencies are those of spectral elements of order 5 on a quarter of the layer, graded to its rim,
+    which share no code with the solid; coarser ones of order 4 lie above by 5e-4 and, from twice the
+    frequency on, by 2e-3.
+    """
+    code, out, _ = run("modes", pad(tmp_path), "--tol", 0.015, "--json")
+    shown = json.loads(out)
+    listed = shown["modes"]
+    exact = [1494.3, 1494.3, 1496.2, 2959.5]
+    assert code == 0 and len(listed) == 10 and shown["options"]["refinement"] == 0.7
+    for mode, hertz in zip(listed, exact[:3]):
+        off = 1 - hertz / mode["frequency_hz"]
+        assert 5e-4 < off < mode["bar"] < 4 * off
+    assert shown["without_bar"] == [f"mode {k}" for k in range(4, 11)]
+    assert shown["why_without_bar"] == NOTHING_BEYOND
+    # closer than the mesh is off, and upper ends
+    frequency = [mode["frequency_hz"] for mode in listed]
+    assert frequency[3] > exact[3] and frequency[6] / frequency[3] < frequency[3] / exact[3]
+
+
+def test_finer_meshes_are_not_tried_where_all_modes_lie_side_by_side_in_a_layer(
+    tmp_path, few_shapes
+):
+    roof = '[[bearing]]\nname = "roof"\nhold = "clamped"\n'
+    settled = settle(sg.load(pad(tmp_path, roof)), 0.05, "modes")
+    (step,) = settled.steps
+    assert not settled.reached and not settled.bars and step.why == NOTHING_BEYOND
+
+
+@pytest.mark.long
+def test_a_wide_layer_has_bars_within_one_per_cent():
+    """Beside spectral elements of order 4 on a quarter, as above, which lie above by 5e-4 at most."""
+    settled = settle(sg.load(PAD), 0.01, "modes")
+    found = sg.modes(settled.body, sg.load(PAD), 10)
+    assert settled.reached and len(settled.bars) == 3 and settled.body.size < 10_000
+    for mode, hertz in zip(found.modes, [1504.3, 1504.3, 1504.6]):
+        assert 0 < 1 - hertz / mode.frequency_hz < settled.bars[Quantity(mode.name)]
 
 
 @pytest.mark.long

@@ -99,6 +99,18 @@ def test_arpack_takes_over_where_lanczos_gives_up(scene, solid, monkeypatch):
     )
 
 
+def test_both_of_twins_among_near_modes_are_found_in_a_basis_that_is_too_small():
+    """Eigenvalues some 1e-3 apart, every other one twice: a basis of few vectors goes on with its best
+    half, and still holds both of each pair.
+    """
+    value = 1 / np.sort(np.r_[np.repeat(1 + 2e-3 * np.arange(100), 2), 1 + 3e-3 * np.arange(200)])
+    start = np.random.default_rng(0).standard_normal((len(value), 8))
+    apply = (lambda f: value[:, None] * f, lambda u: u)
+    pairs = eigen.block_lanczos(*apply, start, 12, tolerance=1e-7, most=48)
+    assert pairs.converged and pairs.columns > 48
+    np.testing.assert_allclose(pairs.theta, value[:12], rtol=1e-12)
+
+
 @pytest.mark.parametrize("fidelity", ["solid", "harmonic"])
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e6])
 def test_count_confirms_complete_results(scene, fidelity, scale, request):

@@ -30,6 +30,7 @@ from solidgear.core.bounds.patches import local_energies
 from solidgear.core.bounds.richer_space import RicherSpace
 from solidgear.core.errors import NoBounds
 from solidgear.core.safety import ROOM, SLOWEST
+from solidgear.core.solve.groups import is_dense
 from solidgear.core.solve.modes import Mode, ModeSet
 from solidgear.core.solve.statics import flexibility, twin_matrix
 
@@ -304,6 +305,14 @@ def is_bounded(modes: ModeSet, mode: Mode) -> bool:
     """Return whether a mode was solved so far above another that this one's bar is hardly wider."""
     coupled = [m for m in modes.solved if m.frequency_hz > 0 and shares_blocks(m, mode)]
     return 1 - eigenvalue(mode) / max(map(eigenvalue, coupled)) >= ROOM
+
+
+def is_beside_many(modes: ModeSet, mode: Mode) -> bool:
+    """Return whether modes lie so close from one on that no search would bound it."""
+    coupled = [m for m in modes.solved if m.frequency_hz > 0 and shares_blocks(m, mode)]
+    coupled.sort(key=lambda m: m.frequency_hz)
+    values = [eigenvalue(m) for m in coupled for _ in m.vectors]
+    return is_dense(values, values.index(eigenvalue(mode)), ROOM)
 
 
 def of_one_problem(a: Mode, b: Mode) -> bool:

@@ -153,7 +153,11 @@ def solid_bounds(
         (_Shape(m, value, u) for m in chosen for value, u in zip(eigenvalues(m), m.vectors)),
         key=lambda shape: shape.value,
     )
-    products, cells_of = _of_shapes(body, shapes)
+    kept = body.cache.find(_OfShapes)
+    if kept is None or not kept.holds(shapes):
+        kept = _OfShapes(shapes, *_of_shapes(body, shapes))
+        body.cache.keep(kept)
+    products, cells_of = kept.of(shapes)
     by_cells: dict[str, np.ndarray] = {}
     for shape, energy in zip(shapes, cells_of):
         name = shape.mode.name
@@ -230,6 +234,30 @@ class _Shape:
     mode: Mode
     value: float  #: rad^2/s^2
     vectors: dict[int, np.ndarray]  #: as in :attr:`Mode.vectors`
+
+    @property
+    def fields(self) -> tuple[tuple[int, int], ...]:
+        """Blocks, and the arrays that hold the shape."""
+        return tuple((block, id(field)) for block, field in self.vectors.items())
+
+
+@dataclass(frozen=True)
+class _OfShapes:
+    """Errors of the shapes that were computed last; kept with their body."""
+
+    shapes: Sequence[_Shape]
+    products: np.ndarray  #: (k, k) of energy, rad^2/s^2
+    by_cells: Sequence[np.ndarray]  #: (ne,) energies of each
+
+    def holds(self, shapes: Sequence[_Shape]) -> bool:
+        """Return whether the errors of some shapes are among these."""
+        return {shape.fields for shape in shapes} <= {shape.fields for shape in self.shapes}
+
+    def of(self, shapes: Sequence[_Shape]) -> tuple[np.ndarray, list[np.ndarray]]:
+        """Return the products (k, k) and the energies by cells of some of the shapes."""
+        fields = [shape.fields for shape in self.shapes]
+        places = [fields.index(shape.fields) for shape in shapes]
+        return self.products[np.ix_(places, places)], [self.by_cells[k] for k in places]
 
 
 def eigenvalues(mode: Mode) -> tuple[float, ...]:

@@ -16,7 +16,13 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body, Supports
-from solidgear.core.bounds.harmonic import Later, harmonic_bounds, is_bounded, with_tail
+from solidgear.core.bounds.harmonic import (
+    Later,
+    harmonic_bounds,
+    is_beside_many,
+    is_bounded,
+    with_tail,
+)
 from solidgear.core.judge.bars import LEAST, ErrorBar
 from solidgear.core.judge.quantities import Values, in_order, size
 from solidgear.core.judge.solving import Statics, extended_modes, numbers
@@ -34,8 +40,9 @@ if TYPE_CHECKING:
 
 #: why a mode has no error bar
 NOTHING_BEYOND = (
-    "an error bar needs a mode beyond those side by side with it that the mesh resolves, and none "
-    f"was found among the lowest {MOST_SHAPES} shapes"
+    "an error bar needs a mode beyond those side by side with it that the mesh resolves, and none was "
+    f"found among the lowest {MOST_SHAPES} shapes, or modes lie too dense for one there; without a bar "
+    "a frequency is an upper end"
 )
 #: shapes above a list of modes that are looked at for its bars
 ABOVE = 12
@@ -148,13 +155,15 @@ def mode_bars(
 ) -> dict[str, float]:
     """Compute error bars of the frequencies of a solid, which lie above the exact ones, of all
     families: relative, by the names of elastic modes; without modes beyond whose neighbours nothing
-    was found. `extended` is the list with all that bars rest on, where it is known.
+    was found or is worth a search. `extended` is the list with all that bars rest on, where it is
+    known.
     """
-    names = elastic_names(modes_listed)
-    if not names:
+    elastic = [mode for mode in modes_listed.modes if mode.frequency_hz > 0]
+    if not elastic:
         return {}
     if extended is None:
         extended = with_all_for_bars(body, supports, modes_listed)
+    names = [m.name for m in elastic if not is_beside_many(extended, m)]
     bounds = bounds_of(scene, body, supports, False, extended, names)
     bars: dict[str, float] = {}
     misshapen = geometry_share(body)
@@ -177,7 +186,8 @@ def with_all_for_bars(body: Body, supports: Supports, listed: ModeSet) -> ModeSe
     def rest_on_others(found: ModeSet) -> bool:
         # the gap to the modes above counts, in every family
         widened = found is not listed or _all_below(found)
-        return widened and all(is_bounded(found, mode) for mode in elastic)
+        bounded_ = (is_bounded(found, mode) or is_beside_many(found, mode) for mode in elastic)
+        return widened and all(bounded_)
 
     return extended_until(body, supports, listed, rest_on_others)
 

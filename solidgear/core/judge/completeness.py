@@ -69,7 +69,7 @@ def _reach(evidence: dict) -> str:
     if COMPLETE not in evidence:
         return (
             f"No mode of this mesh missed below {evidence[COUNTED]:.6g} Hz ({method}; the body "
-            "itself may have one more, since there are no error bars)"
+            "itself may have one more, since not every mode has an error bar)"
         )
     suffix = (
         "" if evidence[COMPLETE] == evidence[COUNTED] else ", less error bars of what lies above"

@@ -21,10 +21,16 @@ from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Any
 
 from solidgear.core.body import Body, as_supports
+from solidgear.core.bounds.harmonic import is_beside_many
 from solidgear.core.bounds.refining import Meshed
 from solidgear.core.errors import NoBounds
 from solidgear.core.judge.answer import read_tolerance, solve_cheapest
-from solidgear.core.judge.bounded import NOTHING_BEYOND, mode_bars, static_bars
+from solidgear.core.judge.bounded import (
+    NOTHING_BEYOND,
+    mode_bars,
+    static_bars,
+    with_all_for_bars,
+)
 from solidgear.core.judge.quantities import at_points, between
 from solidgear.core.judge.question import FamilySolver, Listing, build_families
 from solidgear.core.judge.refinement import FINER_FILE, NO_FINER, Progress, Refinement, mesh_words
@@ -34,6 +40,7 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.machine.memory import NoRoom
 from solidgear.core.machine.threads import pinned
 from solidgear.core.quantity import COMPLIANCE, FREQUENCY, QUANTITIES, STIFFNESS, Quantity
+from solidgear.core.safety import ROOM
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.modes import ModeSet, modes
 
@@ -226,7 +233,7 @@ def _settled_body(
         level = {**LADDER[MODEL].given(scene, {}), **mesh}
         progress(f"{LADDER[MODEL].title}: {mesh_words(level)}")
         try:
-            body, bars, without_bars = _judged_body(scene, ask, points, level)
+            body, bars, without_bars, ended = _judged_body(scene, ask, points, level)
         except (NoRoom, MemoryError) as error:
             if not steps:
                 raise
@@ -236,8 +243,7 @@ def _settled_body(
         options = level
         largest = max(bars.values(), default=math.inf)
         reached = largest <= tol and not without_bars
-        # finer cells do not part modes that lie side by side
-        chosen = reached or mesh is meshes[-1] or without_bars == NOTHING_BEYOND
+        chosen = reached or mesh is meshes[-1] or ended
         reason = ""
         if chosen and not reached:
             reason = without_bars or (NO_FINER if block else FINER_FILE)
@@ -272,9 +278,9 @@ def _settled_body(
 
 def _judged_body(
     scene: Scene, ask: str, points: tuple[str, ...], options: dict[str, Any]
-) -> tuple[Body, dict[Quantity, float], str]:
+) -> tuple[Body, dict[Quantity, float], str, bool]:
     """Build the body on one mesh, and return the error bars of the numbers asked for, or the reason
-    for none.
+    for none, and whether no finer mesh would have any.
     """
     body, supports = build(scene, MODEL, **options), as_supports(scene)
     bars: dict[Quantity, float] = {}
@@ -282,11 +288,16 @@ def _judged_body(
         if ask != "modes":
             bars |= static_bars(scene, body, supports, points)
         if ask != "stiffness":
-            listed = modes(body, scene, scene.ask.modes)
-            by_name = mode_bars(scene, body, supports, listed)
+            # with the room that the list of the command `modes` has, which goes on from here
+            listed = modes(body, scene, scene.ask.modes, room=ROOM)
+            extended = with_all_for_bars(body, supports, listed)
+            by_name = mode_bars(scene, body, supports, listed, extended)
             bars |= {Quantity(name): bar for name, bar in by_name.items()}
-            if not by_name and any(mode.frequency_hz > 0 for mode in listed.modes):
-                return body, bars, NOTHING_BEYOND
+            elastic = [mode for mode in listed.modes if mode.frequency_hz > 0]
+            if elastic and not by_name:
+                # finer cells do not part modes that lie side by side
+                ended = all(is_beside_many(extended, mode) for mode in elastic)
+                return body, bars, NOTHING_BEYOND, ended
     except NoBounds as error:
-        return body, {}, str(error)
-    return body, bars, ""
+        return body, {}, str(error), False
+    return body, bars, "", False

@@ -35,7 +35,7 @@ SINGLE = ("superlu",)
 CACHED = 6_000  # unknowns
 WIDTH = 8
 # Numbers that a basis may always have: thin layers have dozens of modes within a per cent, of which
-# Lanczos finds eight with 344 vectors, and ARPACK may leave out one of two twins.
+# Lanczos finds eight with 344 vectors, and ARPACK left out one of two twins.
 BASIS = 4_000_000
 TOLERANCE = 1e-7  # of shapes; frequencies are good to its square
 

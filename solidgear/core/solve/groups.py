@@ -8,6 +8,7 @@ wanted: by a closed form that no family undercuts and that grows with n, then by
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -15,6 +16,7 @@ import numpy as np
 from solidgear.core.body import FURTHER, Block, Body, Supports, component_rows
 from solidgear.core.body.cache import LastTwo
 from solidgear.core.errors import SolidgearError
+from solidgear.core.safety import BESIDE
 from solidgear.core.solve.coupling import groups
 from solidgear.core.solve.eigen import Raw, Solved, count_below, lowest
 from solidgear.core.solve.families import FAMILIES, family_of, repeats, waves_of
@@ -27,7 +29,7 @@ LIGHT = 1.5
 MOST_WAVES = 100
 #: eigenvalues above this many times a limit are clear of it
 CLEAR = 1.01
-#: shapes that a group searches on by, for room above a list, and that are searched at most
+#: shapes that a group searches on by, at least, for room above a list, and that are searched at most
 FARTHER, MOST_SHAPES = 4, 160
 # Rounding in a factor moves eigenvalues by about eps times the highest one; nearer to the bound
 # than a hundred times that, signs may turn.
@@ -76,16 +78,48 @@ class Part:
 
     def has_room(self, limit: float, room: float) -> bool:
         """Return whether the first eigenvalue above a limit, rad^2/s^2, has another one so far above
-        it, relative, or no more are worth a search.
+        it, relative, or no more are worth a search: too many, or too close (:func:`is_dense`).
         """
-        above = [r.value for r in self.solved.elastic if r.value > CLEAR * limit]
-        if not room or self.ask + FARTHER > min(MOST_SHAPES, self.supported.size // 2):
+        values = [r.value for r in self.solved.elastic]
+        place = sum(value <= CLEAR * limit for value in values)
+        if not room or self.ask >= self._most:
             return True
-        return bool(above) and 1 - above[0] / above[-1] >= room
+        if place == len(values):
+            return False
+        return 1 - values[place] / values[-1] >= room or is_dense(values, place, room)
+
+    def ask_on(self) -> None:
+        """Ask for as many modes again, of those that are worth a search."""
+        self.ask = min(self.ask + max(FARTHER, self.ask), self._most)
+
+    @property
+    def _most(self) -> int:
+        return min(MOST_SHAPES, self.supported.size // 2)
 
     def values(self) -> list[float]:
         """Return elastic eigenvalues with every shape counted, rad^2/s^2."""
         return [r.value for r in self.solved.elastic for _ in range(self.copies)]
+
+
+def is_dense(values: Sequence[float], place: int, room: float) -> bool:
+    """Return whether the eigenvalues above one of a list, which ascends with every shape counted, lie
+    so close that none among the lowest `MOST_SHAPES` will leave it `room`, relative to the higher one.
+
+    A thin layer that is held on both sides has hundreds of modes within some per cent. A run of a
+    width below `BESIDE` may be of a few equal parts of a body, and end at any place; and of modes in
+    three dimensions a mode has less than twice as many (1.5^(3/2)) below it at a room of a third.
+
+    Examples
+    --------
+    >>> layer = [1 + 0.002 * k for k in range(40)]
+    >>> is_dense(layer, 3, 1 / 3), is_dense([*layer, 3.0], 3, 1 / 3), is_dense(layer[:9], 3, 1 / 3)
+    (True, False, False)
+    """
+    start, end = values[place], values[-1]
+    if not BESIDE <= 1 - start / end < room:
+        return False
+    expected = place + (len(values) - place) * (start / (1 - room) - start) / (end - start)
+    return expected > max(MOST_SHAPES, 2 * place)
 
 
 @dataclass(frozen=True)
@@ -125,7 +159,7 @@ def solved_parts(
             if part.ask < n and part.solved.elastic and not part.reaches(reach):
                 part.ask = min(2 * part.ask, n)
             elif not part.has_room(reach, room):
-                part.ask += FARTHER
+                part.ask_on()
             else:
                 continue
             waiting.append(part)
@@ -215,7 +249,7 @@ def further_parts(
             if not part.reaches(limit) and part.ask <= n // 2 + 1:
                 part.ask = min(2 * part.ask, n // 2 + 2)
             elif not part.has_room(limit, room):
-                part.ask += FARTHER
+                part.ask_on()
             else:
                 break
         further.append(part)

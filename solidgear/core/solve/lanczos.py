@@ -4,7 +4,8 @@ One factorisation of A is at hand and a solve with eight right-hand sides costs 
 one, so eight directions are driven at a time. Twins are found together whatever their symmetry,
 because a block holds both. The basis is kept orthogonal in the mass norm in full (Golub and
 Underwood 1977; Grimes, Lewis and Simon 1994): it has some tens of columns, which cost little beside
-the solves.
+the solves. Where modes lie so close that it would outgrow its room, its best half goes on (Wu and
+Simon 2000, SIAM J. Matrix Anal. Appl. 22, 602), still in blocks.
 """
 
 from __future__ import annotations
@@ -26,6 +27,10 @@ class Eigenpairs:
     converged: bool
 
 
+#: columns that may be spent, in those of a full basis
+PATIENCE = 20
+
+
 def block_lanczos(
     operator: Linear,
     mass: Linear,
@@ -37,7 +42,7 @@ def block_lanczos(
     seed: int = 1,
 ) -> Eigenpairs:
     """Find the `wanted` largest eigenvalues of a symmetric positive operator ``A^-1 f`` in the mass
-    inner product; not converged if that takes more than `most` basis vectors.
+    inner product, with a basis of at most `most` vectors; not converged after `PATIENCE` of these.
 
     Parameters
     ----------
@@ -66,7 +71,7 @@ def block_lanczos(
     # Column order: slices of leading columns stay contiguous, and the direct solvers want it.
     basis, heavy = (np.empty((n, most + width), order="F") for _ in range(2))
     small = np.zeros((most + width,) * 2)
-    k = 0
+    k = spent = 0
     block, loaded, _ = _orthonormal(start, mass(start))
     while True:
         p = block.shape[1]
@@ -74,13 +79,15 @@ def block_lanczos(
         old, k = k, k + p
         q, mq = basis[:, :k], heavy[:, :k]
         ahead = operator(loaded)
+        spent += p
         column = mq.T @ ahead
         small[:k, old:k], small[old:k, :k] = column, column.T
         block, loaded, coupling = _outside(ahead, column, q, mq, mass)
         if k < min(wanted, n) and block.shape[1]:
             continue
-        theta, s = np.linalg.eigh((small[:k, :k] + small[:k, :k].T) / 2)
-        theta, s = theta[::-1][:wanted], s[:, ::-1][:, :wanted]
+        every, turn = np.linalg.eigh((small[:k, :k] + small[:k, :k].T) / 2)
+        every, turn = every[::-1], turn[:, ::-1]
+        theta, s = every[:wanted], turn[:, :wanted]
         residual = np.linalg.norm(coupling @ s[old:], axis=0)
         converged = k >= min(wanted, n) and bool((residual <= tolerance * np.abs(theta)).all())
         if not converged and not block.shape[1] and k < n:
@@ -88,8 +95,14 @@ def block_lanczos(
             # could not look.
             fresh = operator(generator.standard_normal((n, width)))
             block, loaded, _ = _outside(fresh, mq.T @ fresh, q, mq, mass)
-        if converged or not block.shape[1] or k + block.shape[1] > most:
-            return Eigenpairs(theta, q @ s, k, converged)
+        full = k + block.shape[1] > most
+        kept = max(most // 2, wanted)
+        if converged or not block.shape[1] or full and (spent > PATIENCE * most or kept >= k):
+            return Eigenpairs(theta, q @ s, spent, converged)
+        if full:
+            basis[:, :kept], heavy[:, :kept] = q @ turn[:, :kept], mq @ turn[:, :kept]
+            small[:kept, :kept] = np.diag(every[:kept])
+            k = kept
 
 
 def _orthonormal(x, heavy, least: float = 0.0):
