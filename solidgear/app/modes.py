@@ -165,7 +165,7 @@ def modes_sheet(modes: ModeSet, judged: Judged, proof: dict[str, Any], counted: 
             f"rigid modes {evidence['rigid_modes']}, {evidence['method']} on {evidence['backend']}.",
             completeness(proof, model),
         ]
-    notes += bar_lines(settled, judged.bars)
+    notes += bar_lines(settled, judged.bars, bool(bare))
     if bars and settled is None:
         notes.append(source_of_bars(model))
     if not bars and reason:

@@ -48,14 +48,16 @@ class Judged:
         return self.settled is None or self.settled.reached
 
 
-def bar_lines(settled: Settled | None, bars: Mapping[Quantity, float] | None = None) -> list[str]:
+def bar_lines(
+    settled: Settled | None, bars: Mapping[Quantity, float] | None = None, bare: bool = False
+) -> list[str]:
     """Return the largest error bar shown, by default of all judged, and whether the tolerance is
-    kept.
+    kept; `bare` where further numbers are shown without one.
     """
     if settled is None:
         return []
     chosen = settled.bars if bars is None else bars
-    return [*largest_bar(chosen, settled.point), *sentences(settled)]
+    return [*largest_bar(chosen, settled.point), *sentences(settled, bare)]
 
 
 def over_the_sweep(settled: Settled | None) -> list[str]:
@@ -87,7 +89,7 @@ def ended(settled: Settled | None) -> None:
         raise typer.Exit(NOT_REACHED)
 
 
-def sentences(answered: Answered | Settled) -> list[str]:
+def sentences(answered: Answered | Settled, bare: bool = False) -> list[str]:
     """Return sentences on solids that were skipped and why, and on the tolerance; skipped beams
     are not named.
 
@@ -103,6 +105,7 @@ def sentences(answered: Answered | Settled) -> list[str]:
     tolerance = f"{100 * answered.tolerance:g} %"
     if answered.reached:
         within = "All others are within" if answered.missing else "Within"
+        within = "What has an error bar is within" if bare else within
         lines.append(f"{within} the {tolerance} asked.")
         return lines
     reason = next((step.why for step in answered.steps if step.chosen and step.why), "")
