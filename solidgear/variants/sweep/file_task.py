@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, KeysView, Mapping, Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
 from typing import Any, ClassVar, Generic, TypeVar
 
@@ -219,6 +220,18 @@ class Swept(Sheeted):
 
 class FileTask(Task[Swept]):
     """Turns variants of files, each solved by itself, into rows."""
+
+    @cached_property
+    def _read(self) -> dict[int, Any]:
+        """The variant that was read last, by its number."""
+        return {}
+
+    def variant(self, index: int) -> Any:
+        """Return a variant; numbers and cautions of a row read it once."""
+        if index not in self._read:
+            self._read.clear()
+            self._read[index] = self.variants.variant(index)
+        return self._read[index]
 
     @property
     def misalignments(self) -> tuple[str, ...]:

@@ -73,7 +73,7 @@ class SceneTask(FileTask):
     def cautions_of(self, index: int) -> list[str]:
         numbers = SHOWN if ANSWER in self.ask else AT_REST
         numbers = dict.fromkeys(self.names) if self.names else numbers
-        return number_cautions(self.variants.variant(index), numbers, self.model or "")
+        return number_cautions(self.variant(index), numbers, self.model or "")
 
     @property
     def columns(self) -> dict[str, type]:
@@ -106,7 +106,7 @@ class SceneTask(FileTask):
         }
 
     def numbers(self, index: int) -> dict[str, Any]:
-        scene = self.variants.variant(index)
+        scene = self.variant(index)
         out: dict[str, Any]
         if ANSWER in self.ask:
             out = self._settled(scene) if self.model is None else self._fixed(scene)

@@ -119,7 +119,7 @@ class TrainTask(FileTask):
         return {}
 
     def cautions_of(self, index: int) -> tuple[str, ...]:
-        train, of_contact = self.variants.variant(index), list[str]()
+        train, of_contact = self.variant(index), list[str]()
         point = self.variants.operating_point(index, train)
         if point is not None and point.torque and (CONTACT in self.ask or asks_for_teeth(train)):
             carried = self.teeth.carried(self.variants.beside_flanks(index), train, point)
@@ -203,7 +203,7 @@ class TrainTask(FileTask):
         return max(0, widest - MOST_MODES) if self.n is None else 0
 
     def numbers(self, index: int) -> dict[str, Any]:
-        train = self.variants.variant(index)
+        train = self.variant(index)
         point = self.variants.operating_point(index, train)
         masses = [mass_of(shaft.scene)[0] for shaft in train.shafts.values()]
         numbers: dict[str, Any] = {BARS: self.without_bars, MASS: sum(masses)}
