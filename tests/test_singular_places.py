@@ -23,7 +23,9 @@ from solidgear.core.bounds.wedge import wedge_exponent
 from solidgear.core.meshing.meridian import CUT_RATIO
 from solidgear.core.scene import Chamfer, Fillet, Material, Port, Scene, Segment
 from tests.command import command
-from validation.campaign.cases.answers import ask, excluding, scene_of
+from validation.agree import commands, nested
+from validation.agree.relation import failed
+from validation.campaign.cases.answers import ask, scene_of
 
 SHAFTS = Path(__file__).parent / "found" / "shafts"
 #: torsional compliance of the plastic end, rad/(N m), and how sure
@@ -225,11 +227,5 @@ def test_answers_at_tolerances_never_exclude_each_other(seed):
     1 40` asks more of them.
     """
     scene = scene_of(f"ends {seed}")
-    assert not excluding(scene.name, {tol: ask(scene, tol) for tol in (1e-2, 1e-3)})
-
-
-def test_answers_that_exclude_each_other_are_found():
-    said = {"quantity": "C_zz", "value": 1.0, "bar": 0.01, "size": 1.0, "side": "above"}
-    finer = said | {"value": 1.02, "bar": 0.001}
-    assert excluding("shaft", {1e-2: {"values": [said]}, 1e-3: {"values": [finer]}})
-    assert not excluding("shaft", {1e-2: {"values": [said]}, 1e-3: {"values": [said]}})
+    claims = {f"{tol:g}": commands.answered(ask(scene, tol)["values"]) for tol in (1e-2, 1e-3)}
+    assert failed(nested.beside(scene.name, claims)) == []
