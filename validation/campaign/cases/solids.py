@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import solidgear as sg
-from solidgear.core.body import as_supports
+from solidgear.core.body import Body, Supports, as_supports
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.bounded import bounded
 from solidgear.core.judge.quantities import size
@@ -25,12 +25,16 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.ladder.solid import AROUND, HEXAHEDRA, TETRAHEDRA, Level
 from solidgear.core.machine.whole_file import whole
 from solidgear.core.quantity import STIFFNESS, Quantity
+from validation.agree import nested
+from validation.agree.relation import Number, failed
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.answers import ASKED, kind_of, scene_of
 from validation.campaign.rows import DECIDED, Cost, Found, Row, Truth
 from validation.campaign.scenes.bodies import BODIES
+from validation.campaign.scenes.families import FAMILIES
 from validation.campaign.scenes.solids import (
     BRICKS,
+    ELSEWHERE,
     FEATURES,
     HARMONIC,
     MESH_FILE,
@@ -41,6 +45,7 @@ from validation.campaign.scenes.solids import (
     Part,
 )
 from validation.campaign.truths import features
+from validation.campaign.truths.elsewhere import FREQUENCIES, reference
 from validation.campaign.truths.kept import name_of
 
 #: relative error of the true values asked for
@@ -51,6 +56,8 @@ SHAPES = 10
 MODES = 4
 #: refinements of sectors that are the truth
 FINER = (0.35, 0.5, 0.7)
+
+SORTS = PARTS | FAMILIES
 
 _LAYERED = [{**level, "around": AROUND} for level in HEXAHEDRA[:3]]
 #: what is solved: by the name of an element, meshes coarse to fine
@@ -80,7 +87,7 @@ class Solids(Case):
         add("--words", nargs="*", help="drawn bodies whose names have one of these words")
         add("--no-drawn", action="store_true", help="leave the drawn bodies out")
         add("--no-random", action="store_true", help="leave the random shafts out")
-        add("--sorts", nargs="*", default=list(PARTS), choices=list(PARTS), help="other bodies")
+        add("--sorts", nargs="*", default=list(SORTS), choices=list(SORTS), help="other bodies")
         add("--parts", type=int, default=10, help="of every sort, from the first seed on")
         add("--elements", nargs="+", default=list(MESHES), choices=list(MESHES), help="of shafts")
         add("--limit", type=int, default=30_000, help="unknowns of a mesh")
@@ -119,7 +126,20 @@ class Solids(Case):
                 out.problems.append(f"{body}, {mesh.element} {tags['mesh']}: {problem}")
                 continue
             out.add(found)
+        out.failures += map(str, failed(nested.beside(body, claims_of(out.rows))))
         return out
+
+
+def claims_of(rows: Sequence[Row]) -> dict[str, dict[str, Number]]:
+    """Numbers by their mesh, counted from the truth in sizes of the quantity: whatever that is, intervals
+    of two meshes meet or exclude each other.
+    """
+    claims: dict[str, dict[str, Number]] = {}
+    for row in rows:
+        if row.tags["kind"] not in (LOWER, OF_MESH) and row.error is not None:
+            mesh = claims.setdefault(f"{row.tags['element']} {row.tags['mesh']}", {})
+            mesh[row.quantity] = Number.within(row.error, row.bar, 1.0)
+    return claims
 
 
 def _kept_truths(run: Run, part: Part) -> tuple[dict[str, Truth], str]:
@@ -146,9 +166,9 @@ def _kept_truths(run: Run, part: Part) -> tuple[dict[str, Truth], str]:
 def part_of(body: str, folder: Path, elements: Sequence[str]) -> Part:
     """A body by its name: with the meshes of a shaft of revolution, or a part of another sort."""
     sort, *seed = body.split()
-    if sort in PARTS:
+    if sort in SORTS:
         folder.mkdir(parents=True, exist_ok=True)
-        return PARTS[sort](int(seed[0]), folder)
+        return SORTS[sort](int(seed[0]), folder)
     scene = scene_of(body)
     levels = [(element, level) for element in elements for level in MESHES[element]]
     meshes = [Mesh(scene, element, {"element": element, **level}) for element, level in levels]
@@ -229,7 +249,24 @@ def of_bricks(part: Part, folder: Path) -> dict[str, dict]:
     }
 
 
-TRUTHS = {HARMONIC: answered, FEATURES: of_features, SECTORS: of_sectors, BRICKS: of_bricks}
+def of_drawing(part: Part, folder: Path) -> dict[str, dict]:
+    """The same of a body that is drawn, by elements of our own."""
+    assert part.drawing is not None
+    found = reference(part.drawing)
+    values = {name: value for name, (value, _) in found.items()}
+    return {
+        name: {"value": value, "uncertainty": doubt, "size": size(values, name), "how": part.source}
+        for name, (value, doubt) in found.items()
+    }
+
+
+TRUTHS = {
+    HARMONIC: answered,
+    FEATURES: of_features,
+    SECTORS: of_sectors,
+    BRICKS: of_bricks,
+    ELSEWHERE: of_drawing,
+}
 
 
 def judged(
@@ -245,9 +282,10 @@ def judged(
         found.costs.append(Cost(body, {"stage": stage, **tags}, spent, unknowns))
         return result
 
-    known = [Quantity(name) for name in truths]
     solid = timed("build", build, scene, mesh.model, **mesh.options)
     supports = as_supports(scene)
+    truths = _by_modes(truths, solid, supports)
+    known = [Quantity(name) for name in truths]
     statics = None
     if supports.ports:
         statics = timed("statics", Statics.for_quantities, scene, solid, supports, known)
@@ -278,6 +316,21 @@ def judged(
                 )
             )
     return found
+
+
+def _by_modes(truths: dict[str, Truth], solid: Body, supports: Supports) -> dict[str, Truth]:
+    """True values, frequencies that are known by their place alone under the names of modes there."""
+    places = [name for name in FREQUENCIES if name in truths]
+    if not places:
+        return truths
+    shapes = [
+        m.name
+        for m in sg.modes(solid, supports, SHAPES).modes
+        if m.frequency_hz > 0
+        for _ in m.vectors
+    ]
+    others = {name: truth for name, truth in truths.items() if name not in places}
+    return others | {name: truths[place] for name, place in zip(shapes, places)}
 
 
 def rows_of(
