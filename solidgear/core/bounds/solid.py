@@ -199,8 +199,7 @@ def share_of_error(scene: Scene, body: Body) -> float:
     element = body.mesh["element"]
     order = ELEMENTS[element].order
     share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body)))
-    if not without_axis(scene):
-        share = max(share, narrow_share(scene, body, order))
+    share = max(share, narrow_share(scene, body, order))
     mesh = mesh_of(body)
     if mesh is not None:
         layers = Layers.of(scene, body, mesh)
