@@ -15,7 +15,7 @@ from pathlib import Path
 from typing import Any
 
 import solidgear as sg
-from solidgear.core.body import Body, Supports, as_supports
+from solidgear.core.body import as_supports
 from solidgear.core.judge.bars import ErrorBar
 from solidgear.core.judge.bounded import bounded
 from solidgear.core.judge.quantities import size
@@ -25,6 +25,7 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.ladder.solid import AROUND, HEXAHEDRA, TETRAHEDRA, Level
 from solidgear.core.machine.whole_file import whole
 from solidgear.core.quantity import STIFFNESS, Quantity
+from solidgear.core.solve.modes import ModeSet
 from validation.agree import nested
 from validation.agree.relation import Number, failed
 from validation.campaign.case import Case, Run
@@ -284,53 +285,55 @@ def judged(
 
     solid = timed("build", build, scene, mesh.model, **mesh.options)
     supports = as_supports(scene)
-    truths = _by_modes(truths, solid, supports)
-    known = [Quantity(name) for name in truths]
+    places = [name for name in FREQUENCIES if name in truths]
+    known = [Quantity(name) for name in truths if name not in places]
     statics = None
     if supports.ports:
         statics = timed("statics", Statics.for_quantities, scene, solid, supports, known)
     frequencies = [name for name in known if name.is_frequency]
+    if places:
+        lowest = sg.modes(solid, supports, SHAPES).modes
+        frequencies = [Quantity(m.name) for m in lowest if m.frequency_hz > 0][: 2 * len(places)]
     modes = timed("modes", search_modes, solid, supports, SHAPES, frequencies, spare=True)
     values = numbers(statics, modes)
     own = {name: m.frequency_hz for name in frequencies if (m := modes.named(name)) is not None}
     own |= values.quantities
-    names = [name for name in known if name in own]
+    names = [name for name in dict.fromkeys((*known, *frequencies)) if name in own]
     given = (scene, solid, supports, statics, modes, names, values.solver)
     bars = timed("estimate", bounded, *given).error_bars
-    for name in (name for name in names if name in bars):
-        truth, value, scale = truths[str(name)], own[name], size(own, name)
-        for kind, *sizes in rows_of(name, value, bars[name], scale, truth):
-            if kind == LOWER and mesh.model == "corrected":
-                continue  # errs to both sides
-            bar, error = map(float, sizes)
-            found.rows.append(
-                Row(
-                    body=body,
-                    quantity=str(name),
-                    tags={**tags, "kind": kind, "quantity": str(name)},
-                    bar=bar,
-                    error=error,
-                    doubt=truth.uncertainty,
-                    how=f"{truth.how}, {unknowns} unknowns",
-                    rule=DECIDED,
-                )
+
+    def add(name: str, kind: str, bar: float, error: float) -> None:
+        truth = truths[name]
+        found.rows.append(
+            Row(
+                body=body,
+                quantity=name,
+                tags={**tags, "kind": kind, "quantity": name},
+                bar=float(bar),
+                error=float(error),
+                doubt=truth.uncertainty,
+                how=f"{truth.how}, {unknowns} unknowns",
+                rule=DECIDED,
             )
+        )
+
+    for name in (name for name in known if name in bars):
+        for kind, bar, error in rows_of(name, own[name], bars[name], size(own, name), truths[name]):
+            if kind != LOWER or mesh.model != "corrected":  # which errs to both sides
+                add(str(name), kind, bar, error)
+    for name, (value, low) in ascending(bars, modes).items() if places else ():
+        add(name, "mode", 1 - low / value, value / truths[name].value - 1)
     return found
 
 
-def _by_modes(truths: dict[str, Truth], solid: Body, supports: Supports) -> dict[str, Truth]:
-    """True values, frequencies that are known by their place alone under the names of modes there."""
-    places = [name for name in FREQUENCIES if name in truths]
-    if not places:
-        return truths
-    shapes = [
-        m.name
-        for m in sg.modes(solid, supports, SHAPES).modes
-        if m.frequency_hz > 0
-        for _ in m.vectors
-    ]
-    others = {name: truth for name, truth in truths.items() if name not in places}
-    return others | {name: truths[place] for name, place in zip(shapes, places)}
+def ascending(bars: dict[Quantity, ErrorBar], modes: ModeSet) -> dict[str, tuple[float, float]]:
+    """The k-th frequency, Hz, and the k-th of the lower ends of all: where every mode lies within its
+    bar, the k-th of the body lies between them, whatever its shape.
+    """
+    listed = [m for m in modes.modes if m.frequency_hz > 0 and m.name in bars for _ in m.vectors]
+    values = sorted(m.frequency_hz for m in listed)
+    lows = sorted(m.frequency_hz * (1 - bars[Quantity(m.name)].width) for m in listed)
+    return dict(zip(FREQUENCIES, zip(values, lows)))
 
 
 def rows_of(

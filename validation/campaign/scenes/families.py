@@ -31,8 +31,8 @@ from validation.campaign.truths.elsewhere import Drawing, Seat
 REFINEMENTS = (0.12, 0.3)
 #: hexahedra of shafts, one cell a band and strip, and the same with cells half as large
 PLAIN = {"layers": 0, "radial_layers": 0, "edge_layers": 0, "around": 8}
-#: cells of gmsh around a full circle
-AROUND = 8
+#: cells of gmsh around a full circle, by attempts
+AROUND = (8, 12, 18, 27)
 #: endings of files of meshes, by turns
 ENDINGS = (".msh", ".inp", ".unv")
 #: cylinders of a shaft: diameter, start, end, mm
@@ -244,14 +244,18 @@ def _write(path: Path, drawing: Drawing, size: float | None = None, patches: boo
         gmsh.model.occ.synchronize()
         if size is not None:
             gmsh.option.setNumber("Mesh.MeshSizeMax", size)
-            gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", AROUND)
-            gmsh.option.setNumber("Mesh.HighOrderOptimize", 2)
             gmsh.option.setNumber("Mesh.SaveGroupsOfElements", 1)
             gmsh.model.addPhysicalGroup(3, [tag for _, tag in solids], 1, "body")
             for k, seat in enumerate(drawing.seats if patches else (), 2):
                 faces = [t for _, t in gmsh.model.getEntities(2) if _lies(gmsh, t, seat)]
                 gmsh.model.addPhysicalGroup(2, faces, k, seat.name)
-            gmsh.model.mesh.generate(3)
+            for around in AROUND:  # until no curved cell is turned inside out
+                gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", around)
+                gmsh.model.mesh.clear()
+                gmsh.model.mesh.generate(3)
+                cells = gmsh.model.mesh.getElementsByType(11)[0]
+                if gmsh.model.mesh.getElementQualities(cells, "minSJ").min() > 0.05:
+                    break
         gmsh.write(str(path))
 
 

@@ -25,7 +25,7 @@ FREQUENCIES = tuple(f"f{k}" for k in range(1, 5))
 #: sizes of cells of the first mesh over those of the second
 FINER = 2.2
 #: size of cells at singular edges over that elsewhere, and how fast it grows with the distance
-AT_EDGES, GROWS = 1 / 8, 0.7
+AT_EDGES, GROWS = 1 / 6, 0.5
 #: share of a small circle around an edge that lies in the body: more at a concave edge, all of it inside
 CONCAVE, INSIDE = 0.55, 0.97
 #: order of the error in sizes of cells: 2 a, with exponents a of 0.5 at the ends of rigid seats and 0.5445
@@ -36,7 +36,7 @@ DOUBT = 0.35
 #: cells around a full circle
 AROUND = 12
 #: cells of the finest mesh
-MOST = 7_000
+LEAST, MOST = 5_000, 8_500
 
 
 @dataclass(frozen=True)
@@ -121,11 +121,13 @@ class Drawing:
 def reference(drawing: Drawing) -> dict[str, tuple[float, float]]:
     """Numbers by their names, each with its relative uncertainty."""
     size = drawing.size
-    for _ in range(4):  # the finest mesh first: it must not be too large
+    for _ in range(6):
         finest = meshed(drawing, size)
-        if finest.nelements < MOST:
+        if LEAST < finest.nelements < MOST:
             break
-        size *= 1.05 * (finest.nelements / MOST) ** (1 / 1.8)
+        size *= (2 * finest.nelements / (LEAST + MOST)) ** (1 / 1.8)
+    else:
+        raise ValueError(f"no mesh of {LEAST} to {MOST} cells, the last had {finest.nelements}")
     coarse, fine = (numbers(drawing, mesh) for mesh in (meshed(drawing, FINER * size), finest))
     ahead = 1 / (FINER**ORDER - 1)
     values = {name: fine[name] + ahead * (fine[name] - coarse[name]) for name in fine}
