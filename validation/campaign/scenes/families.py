@@ -196,7 +196,7 @@ def _in_files(sort: str, seed: int, folder: Path, drawing: Drawing, size: float)
     given = folder / f"{sort}-{seed}{ENDINGS[seed % len(ENDINGS)]}"
     if not given.exists():
         _write(step, drawing)
-        _write(given, drawing, size)
+        _write(given, drawing, size, cut=any(seat.tie == "rigid" for seat in drawing.seats))
     seats = "\n".join(map(_of_axis, drawing.seats))
     body = '[body]\n{} = "{}"\nunit = "mm"\naxis = "y"\n'
     scenes = [
@@ -236,17 +236,19 @@ def _loaded(path: Path, text: str) -> Scene:
     return sg.load(path)
 
 
-def _write(path: Path, drawing: Drawing, size: float | None = None, patches: bool = False) -> None:
-    """Write a drawing, or its mesh with cells of a size, mm; with groups of its patches."""
+def _write(path: Path, drawing: Drawing, size: float | None = None, cut: bool = False) -> None:
+    """Write a drawing, or its mesh with cells of a size, mm; with nodes where seats end, and groups of
+    those that are patches.
+    """
     gmsh = import_gmsh()
     with Session(gmsh):
-        solids = drawing.imprinted(gmsh.model.occ) if patches else drawing.draw(gmsh.model.occ)
+        solids = drawing.imprinted(gmsh.model.occ) if cut else drawing.draw(gmsh.model.occ)
         gmsh.model.occ.synchronize()
         if size is not None:
             gmsh.option.setNumber("Mesh.MeshSizeMax", size)
             gmsh.option.setNumber("Mesh.SaveGroupsOfElements", 1)
             gmsh.model.addPhysicalGroup(3, [tag for _, tag in solids], 1, "body")
-            for k, seat in enumerate(drawing.seats if patches else (), 2):
+            for k, seat in enumerate((s for s in drawing.seats if s.plane >= 0), 2):
                 faces = [t for _, t in gmsh.model.getEntities(2) if _lies(gmsh, t, seat)]
                 gmsh.model.addPhysicalGroup(2, faces, k, seat.name)
             for around in AROUND:  # until no curved cell is turned inside out
@@ -332,7 +334,7 @@ def _of_meshes(
     for k, size in enumerate(sizes):
         file = folder / f"{sort}-{seed}-{k}.msh"
         if not file.exists():
-            _write(file, drawing, size, patches=True)
+            _write(file, drawing, size, cut=True)
         body = f'body = {{ mesh = "{file.name}", unit = "mm", axis = "none" }}\n'
         seats = "\n".join(_table(seat, f'patch = "{seat.name}"') for seat in drawing.seats)
         scenes.append(_loaded(file.with_suffix(".toml"), f"{STEEL}{body}{seats}\n"))

@@ -303,51 +303,62 @@ class _Motion:
     """Motions of a seat: rigid ones of its nodes (n, 6), and the mean motion (6, n) of its faces."""
 
     def __init__(self, mesh: Any, basis: Any, seat: Seat) -> None:
-        import skfem
-        from skfem.helpers import dot
-
         outside = mesh.boundary_facets()
         corners = 1e3 * mesh.p[:, mesh.facets[:, outside]]
         on = seat.has(corners).all(axis=0)
         if seat.plane < 0:  # not the faces at its ends
             on &= np.ptp(corners[1], axis=0) > 1e-6
-        facets = outside[on]
-        if not len(facets):
+        if not on.any():
             raise ValueError(f"no face on the seat of {seat.name!r}")
-        faces = skfem.FacetBasis(mesh, basis.elem, facets=facets, intorder=4)
-        x, weight = faces.global_coordinates().value, faces.dx
-        middle = (x * weight).sum(axis=(1, 2)) / weight.sum()
+        nodes = _nodes(mesh, basis, outside[on])
+        places = basis.doflocs[:, nodes[0]]  # (3, 6, faces)
+        value, slopes, weight = _triangle()
+        x = np.einsum("iq,kif->kfq", value, places)
+        s, t = (np.einsum("iq,kif->kfq", slope, places) for slope in slopes)
+        area = np.linalg.norm(np.cross(s, t, axis=0), axis=0) * weight
+        middle = (x * area).sum(axis=(1, 2)) / area.sum()
         self.centre = middle if seat.plane >= 0 else np.array([0.0, sum(seat.ends) / 2e3, 0.0])
-        rows, gram = [], np.zeros((6, 6))
-
-        def moved(k: int, x: Any) -> Any:
-            away = [x[j] - self.centre[j] for j in range(3)]
-            if k < 3:
-                return [float(j == k) + 0 * x[0] for j in range(3)]
-            axis = np.eye(3)[k - 3]
-            return [
-                axis[1] * away[2] - axis[2] * away[1],
-                axis[2] * away[0] - axis[0] * away[2],
-                axis[0] * away[1] - axis[1] * away[0],
-            ]
-
+        rigid = _rigid(x - self.centre[:, None, None])  # (6, 3, faces, q)
+        gram = np.einsum("kafq,lafq,fq->kl", rigid, rigid, area)
+        shares = np.einsum("kafq,iq,fq->kaif", rigid, value, area)
+        rows = np.zeros((6, basis.N))
         for k in range(6):
-            form = skfem.LinearForm(lambda v, w, k=k: dot(np.array(moved(k, w.x)), v))
-            rows.append(form.assemble(faces))
-            for j in range(6):
-                both = np.sum(np.array(moved(k, x)) * np.array(moved(j, x)), axis=0)
-                gram[k, j] = (both * weight).sum()
-        self.mean = np.linalg.solve(gram, np.array(rows))
-        self.dofs = np.unique(basis.get_dofs(facets).all())
-        places, component = basis.doflocs, self._components(basis)
+            np.add.at(rows[k], nodes, shares[k])
+        self.mean = np.linalg.solve(gram, rows)
+        self.dofs = np.unique(nodes)
         self.rigid = np.zeros((basis.N, 6))
+        moved = _rigid(places - self.centre[:, None, None])
         for k in range(6):
-            self.rigid[:, k] = np.choose(component, np.array(moved(k, places)))
+            self.rigid[nodes, k] = moved[k]
 
-    @staticmethod
-    def _components(basis: Any) -> np.ndarray:
-        """Component (n,) of every unknown."""
-        out = np.zeros(basis.N, int)
-        for k in range(3):
-            out[basis.element_dofs[k::3]] = k
-        return out
+
+def _nodes(mesh: Any, basis: Any, facets: np.ndarray) -> np.ndarray:
+    """Unknowns (3, 6, faces) at corners of faces and at the middles of their edges 01, 12, 02."""
+    corners = mesh.facets[:, facets]
+    count = mesh.p.shape[1]
+    order = np.argsort(mesh.edges[0] * count + mesh.edges[1])
+    keys = (mesh.edges[0] * count + mesh.edges[1])[order]
+    pairs = np.sort(np.array([corners[[a, b]] for a, b in ((0, 1), (1, 2), (0, 2))]), axis=1)
+    edges = order[np.searchsorted(keys, pairs[:, 0] * count + pairs[:, 1])]
+    return np.concatenate([basis.nodal_dofs[:, corners], basis.edge_dofs[:, edges]], axis=1)
+
+
+def _triangle() -> tuple[np.ndarray, tuple[np.ndarray, np.ndarray], np.ndarray]:
+    """Functions (6, q) of second order on a triangle, their slopes and weights (q,)."""
+    from skfem.quadrature import get_quadrature
+    from skfem.refdom import RefTri
+
+    (u, v), weight = get_quadrature(RefTri, 6)
+    w, o = 1 - u - v, 0 * u
+    value = [w * (2 * w - 1), u * (2 * u - 1), v * (2 * v - 1), 4 * w * u, 4 * u * v, 4 * w * v]
+    by_u = [1 - 4 * w, 4 * u - 1, o, 4 * (w - u), 4 * v, -4 * v]
+    by_v = [1 - 4 * w, o, 4 * v - 1, -4 * u, 4 * u, 4 * (w - v)]
+    return np.array(value), (np.array(by_u), np.array(by_v)), weight
+
+
+def _rigid(away: np.ndarray) -> np.ndarray:
+    """Displacements (6, 3, ...) of three shifts and three turns at places (3, ...) from the centre."""
+    x, y, z = away
+    o, one = 0 * x, 0 * x + 1
+    shifts = [[one, o, o], [o, one, o], [o, o, one]]
+    return np.array([*shifts, [o, -z, y], [z, o, -x], [-y, x, o]])
