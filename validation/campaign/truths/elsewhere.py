@@ -277,7 +277,7 @@ def _matrices(mesh: Any, basis: Any, drawing: Drawing) -> tuple[Any, Any]:
     scalar = skfem.Basis(mesh, skfem.ElementTetP2(), intorder=4)
     shapes = [function[0] for function in scalar.basis]
     slope = np.array([shape.grad for shape in shapes])  # (10, 3, ne, q)
-    value = np.array([np.broadcast_to(shape.value, scalar.dx.shape) for shape in shapes])
+    value = np.array([np.broadcast_to(shape, scalar.dx.shape) for shape in shapes])
     count = mesh.nelements
     slope = slope.transpose(2, 0, 1, 3).reshape(count, 30, -1)
     pairs = (slope * scalar.dx[:, None]) @ slope.transpose(0, 2, 1)
