@@ -1,6 +1,8 @@
 """Do bars of a 3D solid, computed on the one mesh that was set, hold? Bodies drawn to break them and
 random shafts, by themselves and in STEP and mesh files, against the harmonic solid, which shares no
-mesh and no function with it; parts with features, sectors, blocks and brackets against finer meshes.
+mesh and no function with it; parts with features, sectors, blocks and brackets against finer meshes,
+families of other bodies against elements of our own.  Numbers of several meshes of a body never exclude
+each other.
 """
 
 from __future__ import annotations
