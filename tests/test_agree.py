@@ -3,7 +3,7 @@
 from pathlib import Path
 
 from validation.agree import described, nested, same_number
-from validation.agree.commands import OF_A_BEAM
+from validation.agree.commands import OF_A_BEAM, answered
 from validation.agree.relation import Number, failed, meeting
 
 ROOT = Path(__file__).parent.parent
@@ -38,6 +38,22 @@ def test_a_beam_is_one_number_by_every_command():
 
 def test_answers_at_several_tolerances_do_not_exclude_each_other():
     all_hold(nested.of_scene(STEPPED, tolerances=(3e-2, 1e-3)), at_least=6)
+
+
+def test_answers_that_exclude_each_other_or_move_to_the_other_side_are_found():
+    said = {"quantity": "C_zz", "value": 1.0, "bar": 0.01, "size": 1.0, "side": "above"}
+    finer = answered([said | {"value": 1.02, "bar": 0.001}])
+    lower = answered([said | {"value": 0.999, "bar": 0.02}])
+    said = answered([said])
+    wrong = {
+        name: [r.name for r in failed(nested.beside("shaft", {"1e-2": said, "1e-3": other}))]
+        for name, other in {"same": said, "finer": finer, "lower": lower}.items()
+    }
+    assert wrong == {
+        "same": [],
+        "finer": ["C_zz: 1e-2, 1e-3"],
+        "lower": ["C_zz never falls: 1e-2, 1e-3"],
+    }
 
 
 def test_a_shaft_described_otherwise_has_the_same_numbers():

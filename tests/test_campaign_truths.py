@@ -3,6 +3,7 @@ solutions with which they share nothing.
 """
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
@@ -15,6 +16,7 @@ from solidgear.core.scene.closed_form import mass_properties
 from solidgear.core.scene.outline import Outline
 from solidgear.cuts.features import BoltCircle, CrossHole, Flat, Keyway, Teeth
 from solidgear.cuts.sector.teeth import section_area, section_polar
+from validation.campaign.truths import elsewhere
 from validation.campaign.truths import reference as spectral_levels
 from validation.campaign.truths.corner_mesh import corner_mesh, singular_points
 from validation.campaign.truths.reference import SURE, settle, spectral_reference
@@ -266,3 +268,32 @@ def test_teeth_from_their_definition_have_the_section_of_the_mesh():
         teeth = Teeth(name="t", segment="s", count=14, **more)
         own = section_area(teeth), section_polar(teeth)
         assert np.allclose(toothed_area(teeth), own, rtol=1e-12)
+
+
+# --------------------------------------------------------------------------- drawn bodies
+@pytest.mark.parametrize("shape", ["Box", "Cylinder"])
+def test_elements_elsewhere_pull_bend_and_twist_a_beam_as_books_say(shape):
+    """Without contraction across, pull and pure bending are of second order, and the elements exact but for
+    the roundness of the cylinder, as is its torsion; the first frequency of a rigid end on springs
+    alone, f = sqrt(k / m) / 2 pi, lies 1 % above that of the beam, which gives way too.
+    """
+    length, side = 60.0, 10.0
+    sizes = {"Box": (-side / 2, 0, -side / 2, side, length, side)}
+    sizes["Cylinder"] = (0, 0, 0, 0, length, 0, side / 2)
+    foot = elsewhere.Seat("foot", "rigid", plane=1, at=0.0, clamped=True)
+    eye = elsewhere.Seat("eye", "average", plane=1, at=length)
+    beam = elsewhere.Drawing((("add", shape, sizes[shape], 0.0),), (foot, eye), 8.0, nu=0.0)
+    mesh = elsewhere.meshed(beam, 8.0)
+    found = elsewhere.numbers(beam, mesh)
+    area, inertia = (side**2, side**4 / 12) if shape == "Box" else (25 * math.pi, 625 * math.pi / 4)
+    modulus = beam.E / 1e6  # N/mm^2
+    assert found["C_yy"] == pytest.approx(length / (modulus * area) / 1e3, rel=1e-4)
+    assert found["C_thx"] == pytest.approx(1e3 * length / (modulus * inertia), rel=3e-4)
+    if shape == "Cylinder":
+        twist = 1e3 * length / (modulus / 2 * 2 * inertia)
+        assert found["C_thy"] == pytest.approx(twist, rel=3e-4)
+    held = replace(foot, clamped=False, springs=(1e4, 1e9, 1e9, 1e6, 1e6, 1e6))
+    soft = elsewhere.numbers(replace(beam, seats=(held, eye)), mesh)
+    mass = beam.density * area * length * 1e-9
+    assert soft["f1"] == pytest.approx(math.sqrt(1e4 / mass) / 2 / math.pi, rel=0.01)
+    assert soft["C_xx"] - found["C_xx"] == pytest.approx(1e-4 + (length / 1e3) ** 2 / 1e6, rel=1e-6)

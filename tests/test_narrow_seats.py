@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 
+import numpy as np
 import pytest
 
 import solidgear as sg
@@ -9,6 +10,7 @@ from solidgear import Bearing, Port, Scene, Segment
 from solidgear.core.bounds.narrow import narrow_share, share_of, share_of_gap
 from solidgear.core.bounds.solid import solid_bounds
 from solidgear.core.safety import LOCAL, SLOWER
+from validation.mesh_files import write_boxes
 
 #: exponents at the ends of seats on a smooth surface
 AVERAGED, RIGID = 1.0, 1 / 2
@@ -97,6 +99,56 @@ def test_bars_hold_at_a_gap_narrower_than_its_cells():
     assert near < exact["C_yy"] < far
     short = replace(bounds, share=share_of(2, 1e-6, RIGID))
     assert ends(scene, short, 1)[1] < exact["C_yy"]
+
+
+def two_patches(folder, name, lines, bricks):
+    """A block of 30 x 12 x 10 mm with two rigid patches 1 mm apart on its upper face, one clamped."""
+
+    def upper(x, y):
+        return y > 12e-3 - 1e-9
+
+    write_boxes(
+        folder / f"{name}.msh",
+        [1e-3 * np.array(places) for places in lines],
+        {
+            "foot": lambda m: upper(*m[:2]) & (m[0] < 14.5e-3),
+            "gear": lambda m: upper(*m[:2]) & (m[0] > 15.5e-3),
+        },
+        bricks=bricks,
+    )
+    rigid = 'patch = "{0}"\nname = "{0}"\nattachment = "rigid"\n'
+    file = folder / f"{name}.toml"
+    file.write_text(
+        f'material = "steel"\nbody = {{ mesh = "{name}.msh", unit = "mm", axis = "none" }}\n'
+        f"[[bearing]]\n{rigid.format('foot')}hold = 'clamped'\n[[port]]\n{rigid.format('gear')}"
+    )
+    scene = sg.load(file)
+    return scene, sg.build(scene, "solid")
+
+
+def test_bars_hold_at_a_gap_between_two_patches(tmp_path):
+    """Of a body without an axis gaps were not seen: a half of what is due across this one."""
+    coarse = [0, 7, 14.5, 15.5, 23, 30], [0, 6, 12], [0, 5, 10]
+    fine = (
+        [0, 7, 12, 13.7, 14.3, 14.5, 14.6, 15, 15.4, 15.5, 15.7, 16.3, 18, 23, 30],
+        [0, 6, 10, 11.3, 11.8, 12],
+        [0, 3, 7, 10],
+    )
+    scene, body = two_patches(tmp_path, "fine", fine, bricks=True)
+    least = [ends(scene, solid_bounds(scene, body, statics=True), k)[0] for k in range(6)]
+    scene, body = two_patches(tmp_path, "coarse", coarse, bricks=False)
+    bounds = solid_bounds(scene, body, statics=True)
+    assert bounds.share == pytest.approx(share_of_gap(2, 6.0))
+    # more than the least of a fine mesh, which the truth is more than
+    assert all(ends(scene, bounds, k)[1] > least[k] for k in range(6))
+    short = replace(bounds, share=share_of(2, 1e-6, RIGID))
+    assert ends(scene, short, 0)[1] < least[0]
+
+
+def test_patches_that_end_at_edges_of_the_body_are_not_narrow():
+    """All of two opposite faces of a thin block, deeper than wide: nothing lies beyond their ends."""
+    scene = sg.load("tests/found/parts/rubber_pad_block.toml")
+    assert narrow_share(scene, sg.build(scene, "solid", refinement=0.5), 2) == 1.0
 
 
 def test_half_a_part_has_the_seats_of_the_whole():

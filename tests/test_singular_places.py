@@ -24,7 +24,9 @@ from solidgear.core.safety import LAYERS
 from solidgear.core.scene import Chamfer, Fillet, Material, Port, Scene, Segment
 from tests.command import command
 from tests.test_holds import on_face
-from validation.campaign.cases.answers import ask, excluding, scene_of
+from validation.agree import commands, nested
+from validation.agree.relation import failed
+from validation.campaign.cases.answers import ask, scene_of
 
 SHAFTS = Path(__file__).parent / "found" / "shafts"
 #: torsional compliance of the plastic end, rad/(N m), and how sure
@@ -82,8 +84,8 @@ def test_the_rim_of_a_held_face_lies_where_a_blend_begins(blend, angle):
     assert rim.r == pytest.approx(0.045)
     expected = wedge_exponent([(math.radians(angle), scene.segments[0].material)], held=1)
     assert rim.exponent == pytest.approx(expected, abs=1e-9)
-    answers = {tol: ask(scene, tol) for tol in (1e-2, 1e-3)}
-    assert not excluding(scene.name, answers)
+    claims = {f"{tol:g}": commands.answered(ask(scene, tol)["values"]) for tol in (1e-2, 1e-3)}
+    assert failed(nested.beside(scene.name, claims)) == []
 
 
 @pytest.mark.parametrize("degrees", [200, 270, 340])
@@ -256,11 +258,5 @@ def test_answers_at_tolerances_never_exclude_each_other(seed):
     1 40` asks more of them.
     """
     scene = scene_of(f"ends {seed}")
-    assert not excluding(scene.name, {tol: ask(scene, tol) for tol in (1e-2, 1e-3)})
-
-
-def test_answers_that_exclude_each_other_are_found():
-    said = {"quantity": "C_zz", "value": 1.0, "bar": 0.01, "size": 1.0, "side": "above"}
-    finer = said | {"value": 1.02, "bar": 0.001}
-    assert excluding("shaft", {1e-2: {"values": [said]}, 1e-3: {"values": [finer]}})
-    assert not excluding("shaft", {1e-2: {"values": [said]}, 1e-3: {"values": [said]}})
+    claims = {f"{tol:g}": commands.answered(ask(scene, tol)["values"]) for tol in (1e-2, 1e-3)}
+    assert failed(nested.beside(scene.name, claims)) == []

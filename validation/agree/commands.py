@@ -56,8 +56,12 @@ def run(*words: Any) -> Printed:
 
 
 def by_answer(scene: Path, *words: Any) -> Numbers:
-    """Numbers of `answer`, each to the side that it names."""
-    values = run("answer", scene, *words).data.get("values", [])
+    """Numbers of `answer`."""
+    return answered(run("answer", scene, *words).data.get("values", []))
+
+
+def answered(values: Sequence[dict[str, Any]]) -> Numbers:
+    """Numbers of rows of an answer, each to the side that it names."""
     return {
         row["quantity"]: Number.within(
             row["value"], row["bar"] * row["size"], row["size"], row["side"]

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from itertools import combinations
 from pathlib import Path
 
-from validation.agree.commands import by_answer, by_modes, by_stiffness
+from validation.agree.commands import Numbers, by_answer, by_modes, by_stiffness
 from validation.agree.relation import ROUNDING, Relation, meeting
 
 KIND = "nested"
@@ -16,23 +16,28 @@ REFINEMENTS = (0.7, 1.0, 1.4)
 
 
 def of_scene(scene: Path, tolerances: tuple[float, ...] = TOLERANCES) -> Iterator[Relation]:
-    """Answers of a shaft at several tolerances; a bound from one side never moves to the other."""
+    """Answers of a shaft at several tolerances."""
     claims = {f"{tol:g}": by_answer(scene, "--tol", tol) for tol in tolerances}
-    yield from meeting(scene.name, KIND, claims)
+    yield from beside(scene.name, claims)
+
+
+def beside(subject: str, claims: Mapping[str, Numbers]) -> Iterator[Relation]:
+    """Numbers of one subject by what they were asked for with, coarse to fine: none excludes another,
+    and a bound from one side never moves to the other.
+    """
+    yield from meeting(subject, KIND, claims)
     for (coarse, numbers), (fine, others) in combinations(claims.items(), 2):
         for name in numbers.keys() & others.keys():
             a, b = numbers[name], others[name]
             seen = f"{a} at {coarse}, {b} at {fine}"
+            rounding = ROUNDING * a.size
             if a.low < a.value == a.high:
-                lower = b.value <= a.value + ROUNDING * a.size
-                yield Relation(
-                    scene.name, KIND, f"{name} never rises: {coarse}, {fine}", lower, seen
-                )
-            if a.low == a.value < a.high:
-                higher = b.value >= a.value - ROUNDING * a.size
-                yield Relation(
-                    scene.name, KIND, f"{name} never falls: {coarse}, {fine}", higher, seen
-                )
+                what, holds = "never rises", b.value <= a.value + rounding
+            elif a.low == a.value < a.high:
+                what, holds = "never falls", b.value >= a.value - rounding
+            else:
+                continue
+            yield Relation(subject, KIND, f"{name} {what}: {coarse}, {fine}", holds, seen)
 
 
 def of_body(body: Path) -> Iterator[Relation]:

@@ -52,6 +52,9 @@ class Relation:
     holds: bool
     seen: str = ""
 
+    def __str__(self) -> str:
+        return f"{self.subject}, {self.name}: {self.seen}"
+
 
 def meeting(
     subject: str, kind: str, claims: Mapping[str, Mapping[str, Number]]

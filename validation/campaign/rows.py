@@ -42,13 +42,6 @@ class Said:
     size: float
     side: str = "both"
 
-    @property
-    def reach(self) -> tuple[float, float]:
-        """Least and largest value that the bar allows."""
-        open_ = self.bar * self.size
-        below, above = (open_ * (self.side in (side, "both")) for side in ("below", "above"))
-        return self.value - below, self.value + above
-
 
 @dataclass(frozen=True)
 class Row:

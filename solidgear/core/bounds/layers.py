@@ -26,8 +26,8 @@ import numpy as np
 from scipy.sparse import coo_matrix
 from scipy.sparse.csgraph import connected_components
 
+from solidgear.core.bounds.seat_facets import seat_facets, unit_normals
 from solidgear.core.errors import NoBounds
-from solidgear.core.meshing.quality import outward
 from solidgear.core.models.solid.edges import SharpEdges, sharp_edges
 from solidgear.core.safety import ALONG, LOCKING, RIM
 from solidgear.core.scene.shaft import without_axis
@@ -179,7 +179,7 @@ def _held(mesh: SolidMesh, materials: Sequence[Material], rigid: Sequence[np.nda
     facets = np.concatenate(kinds).astype(int)
     cells = np.concatenate([softer, *(m.f2t[0, seat] for seat in kinds[1:])]).astype(int)
     kind = np.repeat(np.arange(len(kinds)), [len(part) for part in kinds])
-    out = _normals(m, facets, cells)
+    out = unit_normals(m, facets, cells)
     kind = len(materials) * kind + mesh.segment[cells]
     return Held(facets, cells, out, _faces(m, facets, out, kind))
 
@@ -197,32 +197,17 @@ def _joints(mesh: SolidMesh, materials: Sequence[Material]) -> tuple[np.ndarray,
 def _rigid(scene: Scene, body: Body, mesh: SolidMesh) -> Iterator[np.ndarray]:
     """Yield the facets of every rigid seat."""
     stations = {station.name: station for station in scene.stations}
-    for index, port in enumerate(body.ports):
-        station: Any = stations.get(port.name)
-        if station is None or port.attachment != "rigid":
-            continue
-        if getattr(station, "patch", None) is None:
-            yield mesh.seat(station, scene.segments, 1e-7 * scene.length)
-        else:
-            on_patch = carrying(body, index)[mesh.mesh.facets[:, mesh.boundary]].all(axis=0)
-            yield mesh.boundary[on_patch]
-
-
-def carrying(body: Body, index: int) -> np.ndarray:
-    """Return which nodes of a body in one block carry the loads on a port."""
-    (block,) = body.blocks
-    weights = abs(block.ports[6 * index : 6 * index + 6]).sum(axis=0)
-    moved = np.asarray(weights).ravel() > 0
-    if block.expand is not None:
-        moved = np.asarray(abs(block.expand) @ moved.astype(float)) > 0
-    return np.any(moved.reshape(-1, 3), axis=1)
+    for port in body.ports:
+        station = stations.get(port.name)
+        if station is not None and port.attachment == "rigid":
+            yield seat_facets(scene, body, mesh, station)
 
 
 def _rims(mesh: SolidMesh, held: Held, with_axis: bool) -> Rims:
     """Return the edges of held facets that are those of free ones of the same material."""
     m = mesh.mesh
     free = np.setdiff1d(mesh.boundary, held.facets)
-    normals = _normals(m, free, m.f2t[0, free])
+    normals = unit_normals(m, free, m.f2t[0, free])
     if with_axis:
         # planes through the axis are cuts of halves and sectors, beyond which the body goes on
         middle = m.p[:, m.facets[:, free]].mean(axis=1)
@@ -250,13 +235,6 @@ def _rims(mesh: SolidMesh, held: Held, with_axis: bool) -> Rims:
         _depth(m, free[beside], m.f2t[0, free[beside]], normals[:, beside]),
         kinds[which],
     )
-
-
-def _normals(m: Any, facets: np.ndarray, cells: np.ndarray) -> np.ndarray:
-    """Return unit normals (3, k) of facets, out of some cells beside them."""
-    normal = outward(m, facets)
-    normal /= np.linalg.norm(normal, axis=0)
-    return np.where(m.f2t[0, facets] == cells, normal, -normal)
 
 
 def _depth(m: Any, facets: np.ndarray, cells: np.ndarray, out: np.ndarray) -> np.ndarray:

@@ -24,6 +24,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING, ClassVar
 
 import numpy as np
+from scipy.linalg import eigvalsh_tridiagonal
 
 from solidgear.core.body import Body
 from solidgear.core.body.cache import Cache
@@ -51,7 +52,7 @@ from solidgear.core.machine.processes import give_back
 from solidgear.core.meshing.meeting import least_side
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.models.solid.seat_faces import Seats
-from solidgear.core.safety import CONVEX, LEAST, LOAD_EDGE, MISSING, MOST_STEPS, ROOM, SLOWER
+from solidgear.core.safety import CONVEX, LEAST, LOAD_EDGE, LOCAL, MISSING, MOST_STEPS, ROOM, SLOWER
 from solidgear.core.scene.shaft import without_axis
 from solidgear.core.solve.inertia_relief import ratio
 from solidgear.core.solve.modes import Mode, ModeSet
@@ -204,8 +205,7 @@ def share_of_error(scene: Scene, body: Body) -> float:
     mesh = mesh_of(body)
     layers = None if mesh is None else Layers.of(scene, body, mesh)
     share = 1 / (1 - (order / (order + 1)) ** (4 * _sharpest(scene, body, layers)))
-    if not without_axis(scene):
-        share = max(share, narrow_share(scene, body, order))
+    share = max(share, narrow_share(scene, body, order, layers))
     if layers is not None:
         layers.refuse_locked()
         share += layers.added_share
@@ -486,12 +486,15 @@ class _Search:
         self._size = np.zeros(load.shape[1])
         self.energy: np.ndarray = np.zeros(load.shape[1])
         self._gains: list[np.ndarray] = []
+        self._along: list[np.ndarray] = []
+        self._falls: list[np.ndarray] = []
 
     def advance(self) -> None:
         """Take a step."""
         z = self._inverse[:, None] * self._residual
         size = np.einsum("ij,ij->j", self._residual, z)
-        self._step *= ratio(size, self._size)
+        fall = ratio(size, self._size)
+        self._step *= fall
         self._step += z
         self._size = size
         pull = self._apply(self._step)
@@ -499,6 +502,8 @@ class _Search:
         self.solution += self._step * along
         pull *= along
         self._residual -= pull
+        self._along.append(along)
+        self._falls.append(fall)
         self._gains = [*self._gains[-2:], along * size]
         self.energy = self.energy + self._gains[-1]
 
@@ -513,9 +518,47 @@ class _Search:
         return np.where(gain > ROUNDING * self.energy, missing, 0.0)
 
     @property
+    def softest(self) -> float:
+        """Least eigenvalue of the problem as far as all columns have met it: of Lanczos' matrix, whose
+        entries are the steps (Golub and Van Loan 2013, Matrix Computations, 11.3.5).
+        """
+        along, falls = np.array(self._along), np.array(self._falls)
+        least = np.inf
+        for alpha, beta in zip(along.T, falls.T):
+            alpha = alpha[: int((np.cumsum(alpha <= 0) == 0).sum())]  # until nothing was left
+            if len(alpha):
+                beta = beta[1 : len(alpha)]
+                diagonal = 1 / alpha
+                diagonal[1:] += beta / alpha[:-1]
+                off = np.sqrt(beta) / alpha[:-1]
+                ends = eigvalsh_tridiagonal(diagonal, off, select="i", select_range=(0, 0))
+                least = min(least, float(ends[0]))
+        return least
+
+    @property
+    def most_missing(self) -> np.ndarray:
+        """(k,) most that may be missing, if nothing is softer than half of what any column has met, by
+        the rule of Gauss and Radau (Meurant and Tichy 2013, Numer. Algorithms 62, 163, algorithm CGQ).
+        """
+        floor = self.softest / 2
+        left = np.einsum("ij,i,ij->j", self._residual, self._inverse, self._residual)
+        falls = [*self._falls[1:], ratio(left, self._size)]
+        scale, below = np.full(left.shape, 1 / floor), np.zeros(left.shape, bool)
+        for along, fall in zip(self._along, falls):
+            more = scale - along
+            below |= more <= 0  # something is softer
+            scale = ratio(more, floor * more + fall)
+        most = np.where(below, np.inf, scale * left)
+        return np.where(left > ROUNDING * self.energy, most, 0.0)
+
+    @property
     def converged(self) -> bool:
-        """Whether little is missing of all columns."""
-        return bool((self.missing <= MISSING * self.energy).all())
+        """Whether little is missing of all columns as gains fall, and at most what the safety covers: gains
+        rest for a while where cells are slender, with a quarter of the energy found.
+        """
+        if not (self.missing <= MISSING * self.energy).all():
+            return False
+        return bool((self.most_missing <= (LOCAL - 1) * self.energy).all())
 
 
 def _converged(search: _Search) -> int:
@@ -530,5 +573,5 @@ def _converged(search: _Search) -> int:
             return count + 1
     raise NoBounds(
         f"the error in one order more was not found in {MOST_STEPS} steps: the mesh holds very "
-        "slender cells, or a material that is next to incompressible"
+        "slender cells, or a material that is next to incompressible; use shorter cells there"
     )

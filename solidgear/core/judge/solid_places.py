@@ -9,7 +9,8 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from solidgear.core.body import Body
-from solidgear.core.bounds.layers import Layers, carrying
+from solidgear.core.bounds.layers import Layers
+from solidgear.core.bounds.seat_facets import carrying
 from solidgear.core.bounds.singular_places import Place, Singular, feature_exponent, singular_places
 from solidgear.core.kernel.assembly import reference
 from solidgear.core.meshing.grading import corner_length

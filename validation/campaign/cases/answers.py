@@ -5,15 +5,17 @@ from __future__ import annotations
 import argparse
 import json
 import time
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from functools import partial
-from itertools import combinations
 
 import solidgear as sg
 from solidgear.core.errors import SolidgearError
 from solidgear.core.quantity import Quantity
 from solidgear.core.scene import Scene
 from solidgear.core.scene.coned import coned
+from validation.agree import nested
+from validation.agree.commands import answered
+from validation.agree.relation import failed
 from validation.campaign.case import Case, Run
 from validation.campaign.rows import SMALL, SURE, Cost, Found, Row, Said, held
 from validation.campaign.scenes.bodies import BODIES
@@ -100,7 +102,9 @@ class Answers(Case):
                 answers[tolerance] = answer
             else:
                 out.problems.append(f"{body} at {tolerance:g}: answered by the {answer['rung']}")
-        out.failures += excluding(body, answers)
+        coarse_first = sorted(answers.items(), reverse=True)
+        claims = {f"{tol:g}": answered(answer["values"]) for tol, answer in coarse_first}
+        out.failures += map(str, failed(nested.beside(body, claims)))
         if answers and not (run.given.costs or run.given.nested):
             out.rows += self._rows(run, body, scene, answers)
         return out
@@ -163,24 +167,6 @@ def kind_of(quantity: str) -> str:
     if name.is_frequency:
         return "mode"
     return "static" if name.diagonals is None else "coupling"
-
-
-def excluding(body: str, answers: Mapping[float, dict]) -> list[str]:
-    """Sentences on numbers of one body that answers at two tolerances place apart: no reference is
-    needed to see that one of both is wrong.
-    """
-    out = []
-    for (one, coarse), (other, fine) in combinations(sorted(answers.items(), reverse=True), 2):
-        said = {value["quantity"]: Said(**value) for value in coarse["values"]}
-        for value in fine["values"]:
-            name = value["quantity"]
-            if name not in said:
-                continue
-            low, high = zip(said[name].reach, Said(**value).reach)
-            gap = (max(low) - min(high)) / value["size"]
-            if gap > SMALL:
-                out.append(f"{body}, {name}: answers at {one:g} and {other:g} are {gap:.2g} apart")
-    return out
 
 
 def unsettled(row: Row, finest: float = FINEST) -> bool:

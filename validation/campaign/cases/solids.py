@@ -1,6 +1,8 @@
 """Do bars of a 3D solid, computed on the one mesh that was set, hold? Bodies drawn to break them and
 random shafts, by themselves and in STEP and mesh files, against the harmonic solid, which shares no
-mesh and no function with it; parts with features, sectors, blocks and brackets against finer meshes.
+mesh and no function with it; parts with features, sectors, blocks and brackets against finer meshes,
+families of other bodies against elements of our own.  Numbers of several meshes of a body never exclude
+each other.
 """
 
 from __future__ import annotations
@@ -25,12 +27,17 @@ from solidgear.core.ladder.registry import LADDER
 from solidgear.core.ladder.solid import AROUND, HEXAHEDRA, TETRAHEDRA, Level
 from solidgear.core.machine.whole_file import whole
 from solidgear.core.quantity import STIFFNESS, Quantity
+from solidgear.core.solve.modes import ModeSet
+from validation.agree import nested
+from validation.agree.relation import Number, failed
 from validation.campaign.case import Case, Run
 from validation.campaign.cases.answers import ASKED, kind_of, scene_of
 from validation.campaign.rows import DECIDED, Cost, Found, Row, Truth
 from validation.campaign.scenes.bodies import BODIES
+from validation.campaign.scenes.families import FAMILIES
 from validation.campaign.scenes.solids import (
     BRICKS,
+    ELSEWHERE,
     FEATURES,
     HARMONIC,
     MESH_FILE,
@@ -41,6 +48,7 @@ from validation.campaign.scenes.solids import (
     Part,
 )
 from validation.campaign.truths import features
+from validation.campaign.truths.elsewhere import FREQUENCIES, reference
 from validation.campaign.truths.kept import name_of
 
 #: relative error of the true values asked for
@@ -51,6 +59,8 @@ SHAPES = 10
 MODES = 4
 #: refinements of sectors that are the truth
 FINER = (0.35, 0.5, 0.7)
+
+SORTS = PARTS | FAMILIES
 
 _LAYERED = [{**level, "around": AROUND} for level in HEXAHEDRA[:3]]
 #: what is solved: by the name of an element, meshes coarse to fine
@@ -80,7 +90,7 @@ class Solids(Case):
         add("--words", nargs="*", help="drawn bodies whose names have one of these words")
         add("--no-drawn", action="store_true", help="leave the drawn bodies out")
         add("--no-random", action="store_true", help="leave the random shafts out")
-        add("--sorts", nargs="*", default=list(PARTS), choices=list(PARTS), help="other bodies")
+        add("--sorts", nargs="*", default=list(SORTS), choices=list(SORTS), help="other bodies")
         add("--parts", type=int, default=10, help="of every sort, from the first seed on")
         add("--elements", nargs="+", default=list(MESHES), choices=list(MESHES), help="of shafts")
         add("--limit", type=int, default=30_000, help="unknowns of a mesh")
@@ -119,7 +129,20 @@ class Solids(Case):
                 out.problems.append(f"{body}, {mesh.element} {tags['mesh']}: {problem}")
                 continue
             out.add(found)
+        out.failures += map(str, failed(nested.beside(body, claims_of(out.rows))))
         return out
+
+
+def claims_of(rows: Sequence[Row]) -> dict[str, dict[str, Number]]:
+    """Numbers by their mesh, counted from the truth in sizes of the quantity: whatever that is, intervals
+    of two meshes meet or exclude each other.
+    """
+    claims: dict[str, dict[str, Number]] = {}
+    for row in rows:
+        if row.tags["kind"] not in (LOWER, OF_MESH) and row.error is not None:
+            mesh = claims.setdefault(f"{row.tags['element']} {row.tags['mesh']}", {})
+            mesh[row.quantity] = Number.within(row.error, row.bar, 1.0)
+    return claims
 
 
 def _kept_truths(run: Run, part: Part) -> tuple[dict[str, Truth], str]:
@@ -146,9 +169,9 @@ def _kept_truths(run: Run, part: Part) -> tuple[dict[str, Truth], str]:
 def part_of(body: str, folder: Path, elements: Sequence[str]) -> Part:
     """A body by its name: with the meshes of a shaft of revolution, or a part of another sort."""
     sort, *seed = body.split()
-    if sort in PARTS:
+    if sort in SORTS:
         folder.mkdir(parents=True, exist_ok=True)
-        return PARTS[sort](int(seed[0]), folder)
+        return SORTS[sort](int(seed[0]), folder)
     scene = scene_of(body)
     levels = [(element, level) for element in elements for level in MESHES[element]]
     meshes = [Mesh(scene, element, {"element": element, **level}) for element, level in levels]
@@ -229,7 +252,24 @@ def of_bricks(part: Part, folder: Path) -> dict[str, dict]:
     }
 
 
-TRUTHS = {HARMONIC: answered, FEATURES: of_features, SECTORS: of_sectors, BRICKS: of_bricks}
+def of_drawing(part: Part, folder: Path) -> dict[str, dict]:
+    """The same of a body that is drawn, by elements of our own."""
+    assert part.drawing is not None
+    found = reference(part.drawing)
+    values = {name: value for name, (value, _) in found.items()}
+    return {
+        name: {"value": value, "uncertainty": doubt, "size": size(values, name), "how": part.source}
+        for name, (value, doubt) in found.items()
+    }
+
+
+TRUTHS = {
+    HARMONIC: answered,
+    FEATURES: of_features,
+    SECTORS: of_sectors,
+    BRICKS: of_bricks,
+    ELSEWHERE: of_drawing,
+}
 
 
 def judged(
@@ -245,39 +285,57 @@ def judged(
         found.costs.append(Cost(body, {"stage": stage, **tags}, spent, unknowns))
         return result
 
-    known = [Quantity(name) for name in truths]
     solid = timed("build", build, scene, mesh.model, **mesh.options)
     supports = as_supports(scene)
+    places = [name for name in FREQUENCIES if name in truths]
+    known = [Quantity(name) for name in truths if name not in places]
     statics = None
     if supports.ports:
         statics = timed("statics", Statics.for_quantities, scene, solid, supports, known)
     frequencies = [name for name in known if name.is_frequency]
+    if places:
+        lowest = sg.modes(solid, supports, SHAPES).modes
+        frequencies = [Quantity(m.name) for m in lowest if m.frequency_hz > 0][: 2 * len(places)]
     modes = timed("modes", search_modes, solid, supports, SHAPES, frequencies, spare=True)
     values = numbers(statics, modes)
     own = {name: m.frequency_hz for name in frequencies if (m := modes.named(name)) is not None}
     own |= values.quantities
-    names = [name for name in known if name in own]
+    names = [name for name in dict.fromkeys((*known, *frequencies)) if name in own]
     given = (scene, solid, supports, statics, modes, names, values.solver)
     bars = timed("estimate", bounded, *given).error_bars
-    for name in (name for name in names if name in bars):
-        truth, value, scale = truths[str(name)], own[name], size(own, name)
-        for kind, *sizes in rows_of(name, value, bars[name], scale, truth):
-            if kind == LOWER and mesh.model == "corrected":
-                continue  # errs to both sides
-            bar, error = map(float, sizes)
-            found.rows.append(
-                Row(
-                    body=body,
-                    quantity=str(name),
-                    tags={**tags, "kind": kind, "quantity": str(name)},
-                    bar=bar,
-                    error=error,
-                    doubt=truth.uncertainty,
-                    how=f"{truth.how}, {unknowns} unknowns",
-                    rule=DECIDED,
-                )
+
+    def add(name: str, kind: str, bar: float, error: float) -> None:
+        truth = truths[name]
+        found.rows.append(
+            Row(
+                body=body,
+                quantity=name,
+                tags={**tags, "kind": kind, "quantity": name},
+                bar=float(bar),
+                error=float(error),
+                doubt=truth.uncertainty,
+                how=f"{truth.how}, {unknowns} unknowns",
+                rule=DECIDED,
             )
+        )
+
+    for name in (name for name in known if name in bars):
+        for kind, bar, error in rows_of(name, own[name], bars[name], size(own, name), truths[name]):
+            if kind != LOWER or mesh.model != "corrected":  # which errs to both sides
+                add(str(name), kind, bar, error)
+    for name, (value, low) in ascending(bars, modes).items() if places else ():
+        add(name, "mode", 1 - low / value, value / truths[name].value - 1)
     return found
+
+
+def ascending(bars: dict[Quantity, ErrorBar], modes: ModeSet) -> dict[str, tuple[float, float]]:
+    """The k-th frequency, Hz, and the k-th of the lower ends of all: where every mode lies within its
+    bar, the k-th of the body lies between them, whatever its shape.
+    """
+    listed = [m for m in modes.modes if m.frequency_hz > 0 and m.name in bars for _ in m.vectors]
+    values = sorted(m.frequency_hz for m in listed)
+    lows = sorted(m.frequency_hz * (1 - bars[Quantity(m.name)].width) for m in listed)
+    return dict(zip(FREQUENCIES, zip(values, lows)))
 
 
 def rows_of(

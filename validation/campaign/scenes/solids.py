@@ -22,6 +22,7 @@ from solidgear.core.scene import Bearing, Material, Port, Scene, Segment
 from solidgear.cuts.solid.cuts import mirror_plane
 from solidgear.show.outputs import node_order
 from validation.campaign.scenes.parts import draw
+from validation.campaign.truths.elsewhere import Drawing
 from validation.mesh_files import write_boxes, write_mesh
 from validation.step_parts import write_step
 
@@ -29,6 +30,7 @@ from validation.step_parts import write_step
 STEP, MESH_FILE = "STEP", "mesh file"
 #: where the truth of a body comes from
 HARMONIC, FEATURES, SECTORS, BRICKS = "harmonic", "features", "sectors", "bricks"
+ELSEWHERE = "elsewhere"
 MATERIAL = Material(E=2.07e11, nu=0.3, density=7850.0)
 STEEL = 'material = { E = "207 GPa", nu = 0.3, density = 7850.0 }\n'
 SOFT = 'material = { E = "2 GPa", nu = 0.45, density = 1400.0 }\n'
@@ -60,6 +62,7 @@ class Part:
     #: what the truth is computed from: one scene, or bricks coarse to fine
     exact: list[Scene]
     text: str = field(default="", repr=False)  #: of the scene file of parts with features
+    drawing: Drawing | None = None  #: of parts whose truth is had elsewhere
 
 
 # ------------------------------------------------------------------------------------------------
