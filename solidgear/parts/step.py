@@ -26,6 +26,9 @@ from solidgear.core.meshing.tetrahedra import to_skfem
 
 #: sides of a turn in the triangles that a part is looked at by
 SIDES = 32
+#: size of a part over the least edge of these triangles: roots of teeth and threads, which are long and
+#: narrow, would have ten times as many as all else
+LEAST_EDGE = 500
 #: width of a face over the size of the part below which it is a sliver
 SLIVER = 2e-6
 #: between the volume inside the triangles and that of the kernel
@@ -83,7 +86,7 @@ def survey(path: str, place: Placing, names: tuple[str, ...] = ()) -> Survey:
         gmsh.option.setNumber("Mesh.ElementOrder", 1)
         gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", SIDES)
         gmsh.option.setNumber("Mesh.MeshSizeMax", extent / 20)
-        gmsh.option.setNumber("Mesh.MeshSizeMin", extent / 2000)
+        gmsh.option.setNumber("Mesh.MeshSizeMin", extent / LEAST_EDGE)
         try:
             gmsh.model.mesh.generate(2)
         except Exception as error:
@@ -263,12 +266,13 @@ def _concave(gmsh, edge: int) -> bool:
         return False
     step = 1e-3 * min(gmsh.model.occ.getMass(1, edge), *(_width(gmsh, f) for f in faces))
     # between both faces' planes: of four such places a wedge holds one, its complement three
-    ways = (first + second, first - second, -first - second, second - first)
-    inside = 0
-    for way in ways:
+    outside = 0
+    for way in (first + second, first - second, -first - second, second - first):
         place = list(point + step * way / np.linalg.norm(way))
-        inside += any(gmsh.model.isInside(3, s, place) for _, s in gmsh.model.getEntities(3))
-    return inside == len(ways) - 1
+        outside += not any(gmsh.model.isInside(3, s, place) for _, s in gmsh.model.getEntities(3))
+        if outside > 1:
+            return False
+    return outside == 1
 
 
 def _normal(gmsh, edge: int, place: list[float], face: int) -> np.ndarray:
