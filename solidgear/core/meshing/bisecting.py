@@ -48,7 +48,8 @@ def _halved(filling: Filling, edges: np.ndarray) -> Filling:
     least = np.array([halves.least_ratios(way) for way in WAYS])
     usable, best = least.max(axis=0, initial=0.0) >= FOLD, least.argmax(axis=0)
     uncut = np.ones(mesh.t.shape[1], bool)
-    points, cells, parents, cut = [mesh.p], [mesh.t], [np.arange(len(uncut))], []
+    points, cells, parents = [mesh.p], [mesh.t], [np.arange(len(uncut))]
+    cut: list[int] = []
     for place in np.flatnonzero(usable):
         pairs = np.flatnonzero(halves.edge == place)
         around = halves.cell[pairs]
