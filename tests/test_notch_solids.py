@@ -26,7 +26,7 @@ from solidgear.strength.stress.local_factors import (
     local_shape,
 )
 from solidgear.strength.stress.shaft import shaft_stress
-from solidgear.strength.stress.solid_notches import solid_notches
+from solidgear.strength.stress.solid_notches import SOLIDS, solid_notches
 from solidgear.strength.stress.solid_sheet import solid_factors, solid_stress
 from validation.local_notches import prandtl
 
@@ -97,15 +97,53 @@ def test_a_bar_of_a_groove_holds_what_a_finer_mesh_changes(load, grooved):
 
 
 def test_a_hole_is_as_published(hole):
-    """DIN 743-2, 5.2.3, over the section left: 2.8, 2.03, 1.52, which charts scatter by 10 % about."""
+    """DIN 743-2, 5.2.3, over the section left: 2.8, 2.03, 1.52, which charts scatter by 10 % about; the
+    error bar of a coarse solid comes on top.
+    """
     share = 0.2
     norm = {"tension": 3 - share, "bending": 3 + 1.4 * share - 2.8 * math.sqrt(share)}
     norm["torsion"] = 2.023 - 1.125 * math.sqrt(share)
     for load, factor in hole.factors.items():
-        assert factor.value == pytest.approx(norm[load], rel=0.1)
+        assert abs(factor.value - norm[load]) < 0.1 * norm[load] + factor.bar
     assert hole.widest < 0.2
     # near the shaft's surface
     assert np.hypot(*hole.factors["bending"].place[[0, 2]]) > 0.8 * 0.02
+
+
+#: over the plain shaft, by second-order tetrahedra of scikit-fem on a mesh made for each, with stress
+#: at points of the curved facets: on meshes half as fine they change by 1.2 % in tension, 0.4 % else
+BY_SKFEM = {
+    0.1: {"tension": 3.20, "bending": 2.955, "torsion": 1.949},
+    0.3: {"tension": 4.00, "bending": 3.571, "torsion": 2.065},
+}
+
+
+@pytest.mark.parametrize("share", BY_SKFEM)
+def test_a_hole_is_refined_wherever_its_stress_may_be_largest(share):
+    """Along the wall of a hole stress is so even that the largest place of a coarse mesh is any: to
+    refine there alone ended above 5 %, or with an error bar that left the true factor out.
+    """
+    found = local_factors(SHAFT, HOLE.with_changes(diameter=share * 0.04), 0.05)
+    assert found.widest <= 0.05
+    over_plain = found.nominal.of_plain(0.02, 0.0)
+    for load, exact in BY_SKFEM[share].items():
+        factor, scale = found.factors[load], over_plain[load]
+        assert abs(factor.value / scale - exact) < factor.bar / scale + 0.01 * exact
+
+
+def test_a_hole_in_a_thin_wall_is_that_of_a_plate():
+    """d^2/(R t) = 0.32: little is bent, and the plate's 3 over the section left changes by some tenth."""
+    tube = Segment.cylinder("tube", length=0.4, diameter=0.04, bore=0.036)
+    found = local_factors(tube, HOLE.with_changes(diameter=0.004), 0.2)
+    assert found.factors["tension"].value == pytest.approx(3.0, rel=0.15)
+
+
+def test_a_bar_that_is_not_met_says_what_to_allow(hole, monkeypatch):
+    by_hole = replace(SOLIDS["cross_hole"], factors=lambda *_: hole)
+    monkeypatch.setitem(SOLIDS, "cross_hole", by_hole)
+    (notch,), _ = solid_notches(bent([HOLE]), shaft_stress(bent([HOLE]), {}), 0.01, local=0.03)
+    allowed = math.ceil(100 * hole.widest)
+    assert not notch.reached and f"by the finest mesh here: allow {allowed} %" in notch.remarks[-1]
 
 
 def test_a_turned_hole_has_its_largest_stress_elsewhere(hole):

@@ -36,7 +36,7 @@ from solidgear.core.elements import ELEMENTS
 from solidgear.core.scene import Material, Segment
 from solidgear.cuts.features import CrossHole, Keyway
 from solidgear.cuts.features.cut import Cut
-from solidgear.cuts.local.mesh import Peak, local_mesh
+from solidgear.cuts.local.mesh import local_mesh
 from solidgear.cuts.local.solid import (
     LOADS,
     displacements,
@@ -269,11 +269,8 @@ def beside_calculix(what: str, cut: Cut, size: float) -> list[dict]:
     """
     segment = shaft()
     shape = local_shape(segment, cut)
-    at: list[Peak] = [
-        (peak.place, size * shape.size)
-        for peak in solution_on(shape, segment.material.nu).peaks.values()
-    ]
-    mesh = local_mesh(shape, at)
+    leading = solution_on(shape, segment.material.nu).leading
+    mesh = local_mesh(shape, [(leading, size * shape.size)])
     moved = displacements(mesh, shape, segment.material.nu)
     ours = surface_stress(mesh, free_surface(mesh, shape), moved, *lame_of(segment.material.nu))
     rows = []

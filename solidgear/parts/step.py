@@ -10,7 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from math import acos, cos, pi, sin
+from math import acos, pi, sin
 from typing import Any
 
 import numpy as np
@@ -26,6 +26,9 @@ from solidgear.core.meshing.tetrahedra import to_skfem
 
 #: sides of a turn in the triangles that a part is looked at by
 SIDES = 32
+#: size of a part over the least edge of these triangles: roots of teeth and threads, which are long and
+#: narrow, would have ten times as many as all else
+LEAST_EDGE = 500
 #: width of a face over the size of the part below which it is a sliver
 SLIVER = 2e-6
 #: between the volume inside the triangles and that of the kernel
@@ -83,7 +86,7 @@ def survey(path: str, place: Placing, names: tuple[str, ...] = ()) -> Survey:
         gmsh.option.setNumber("Mesh.ElementOrder", 1)
         gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", SIDES)
         gmsh.option.setNumber("Mesh.MeshSizeMax", extent / 20)
-        gmsh.option.setNumber("Mesh.MeshSizeMin", extent / 2000)
+        gmsh.option.setNumber("Mesh.MeshSizeMin", extent / LEAST_EDGE)
         try:
             gmsh.model.mesh.generate(2)
         except Exception as error:
@@ -252,27 +255,30 @@ def _concave(gmsh, edge: int) -> bool:
     turn.
     """
     faces, _ = gmsh.model.getAdjacencies(1, edge)
-    if len(faces) < 2:
+    if len(faces) != 2:  # of three it is deep inside, where there is no edge of the part
         return False
     (low,), (high,) = gmsh.model.getParametrizationBounds(1, edge)
     middle = [0.53 * low + 0.47 * high]
     point = np.array(gmsh.model.getValue(1, edge, middle))
-    along = np.array(gmsh.model.getDerivative(1, edge, middle))
-    length = np.linalg.norm(along)
-    if not length > 0:
+    first, second = (_normal(gmsh, edge, middle, face) for face in faces)
+    # sides of a face are not known to the kernel by normals, so that a smooth edge may be a slit
+    if not np.linalg.norm(np.cross(first, second)) > sin(2 * pi * (CONCAVE - 0.5)):
         return False
-    along /= length
-    first = np.cross(along, np.eye(3)[int(np.argmin(np.abs(along)))])
-    first /= np.linalg.norm(first)
-    second = np.cross(along, first)
     step = 1e-3 * min(gmsh.model.occ.getMass(1, edge), *(_width(gmsh, f) for f in faces))
-    turns = 2 * pi * (np.arange(24) + 0.31) / 24
-    ring = [point + step * (cos(t) * first + sin(t) * second) for t in turns]
-    inside = 0
-    for _, solid in gmsh.model.getEntities(3):
-        inside += sum(gmsh.model.isInside(3, solid, list(p)) for p in ring)
-    # deep inside there is no edge of the part
-    return CONCAVE * len(ring) < inside < len(ring)
+    # between both faces' planes: of four such places a wedge holds one, its complement three
+    outside = 0
+    for way in (first + second, first - second, -first - second, second - first):
+        place = list(point + step * way / np.linalg.norm(way))
+        outside += not any(gmsh.model.isInside(3, s, place) for _, s in gmsh.model.getEntities(3))
+        if outside > 1:
+            return False
+    return outside == 1
+
+
+def _normal(gmsh, edge: int, place: list[float], face: int) -> np.ndarray:
+    """Return a unit normal of a face at a place on one of its edges."""
+    on_face = gmsh.model.reparametrizeOnSurface(1, edge, place, face)
+    return np.array(gmsh.model.getNormal(face, on_face))
 
 
 def read_solids(gmsh: Any, path: str, place: Placing, *, several: bool) -> list[int]:

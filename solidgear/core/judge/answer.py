@@ -24,7 +24,7 @@ from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.cautions import number_cautions
 from solidgear.core.judge.quantities import canonical_name, judged
 from solidgear.core.judge.question import FamilySolver
-from solidgear.core.judge.refinement import Progress, Refinement, refine
+from solidgear.core.judge.refinement import INTERRUPTED, Progress, Refinement, refine
 from solidgear.core.judge.solving import ENOUGH
 from solidgear.core.judge.steps import Step, Value
 from solidgear.core.ladder import NO_MODEL, build, way_out
@@ -119,7 +119,8 @@ def answer(
     Returns
     -------
     Answered
-        After the last mesh that could be solved; ``reached`` says whether it is within the tolerance.
+        After the last mesh that could be solved, or was before Ctrl-C; ``reached`` says whether it is
+        within the tolerance.
 
     Raises
     ------
@@ -204,6 +205,10 @@ def solve_cheapest(
                     steps.append(Step(name, setting="", valid=False, why=reason))
                     continue
                 refinement.end(f"the next mesh could not be solved: {reason}")
+            except KeyboardInterrupt:  # what a coarser mesh gave is kept
+                if not refinement.levels:
+                    raise
+                refinement.end(INTERRUPTED)
             return solver, steps + refinement.steps
     models: dict[str, list[str]] = {}
     way = way_out(scene)

@@ -31,6 +31,7 @@ from solidgear.core.judge.steps import ABOVE, BELOW, BOTH, Step, Value
 from solidgear.core.ladder.meshes import Sequence as Plan
 from solidgear.core.ladder.model import Model
 from solidgear.core.machine.memory import listening
+from solidgear.core.meshing.quality import MeshError
 from solidgear.core.quantity import COMPLIANCE, FREQUENCY, Quantity
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ Progress = Callable[[str], None]
 #: reasons for no narrower one
 NO_FINER = "there is no finer mesh in the list"
 FINER_FILE = "list a finer mesh beside those of the file"
+INTERRUPTED = "interrupted on a finer mesh"
 
 #: a bar has one side where the solver has left no more than this share of it
 SOLVER_SHARE = 0.01
@@ -195,6 +197,16 @@ class Refinement:
         names = [q for q in in_order(self.levels[-1].quantities) if q in self._with_static()]
         return {q: self.bar(q) for q in names}
 
+    def so_far(self) -> str:
+        """Return the first number wanted and the one with the largest error bar, in words."""
+        values = self.values()
+        if not any(map(math.isfinite, (v.bar for v in values))):
+            return "no error bar"
+        shown = dict.fromkeys((values[0], max(values, key=lambda v: v.bar)))
+        return ", ".join(
+            f"{v.quantity} {v.value:.4g} {v.unit} +- {100 * v.bar:.2g} %" for v in shown
+        )
+
     def values(self) -> tuple[Value, ...]:
         """Return the numbers wanted, each from the finest mesh that was solved for it."""
         return tuple(self._value(name) for name in self.existing())
@@ -278,15 +290,16 @@ class Refinement:
 
 def refine(refinement: Refinement, solver: Solver, progress: Progress, label: str) -> None:
     """Solve finer and finer meshes until every error bar is within the tolerance or its number has
-    been compared with a reference, or no finer mesh would help, or there is none; `progress` gets a
-    sentence on every mesh that begins with `label`.
+    been compared with a reference, or no finer mesh would help, or there is none; `progress` gets
+    sentences on every mesh and its numbers that begin with `label`. Of a list, the first mesh is the
+    coarsest that can be made; MeshError where none can.
     """
 
     def announce(unknowns: int, mb: float) -> None:
         if unknowns >= HEAVY:
             progress(f"{label}: {cost_text(unknowns, mb)}")
 
-    wanted = refinement.wanted
+    wanted, failed = refinement.wanted, None
     for options in _meshes(refinement):
         start = time.perf_counter()
         requested = set(solver.next_quantities())
@@ -295,8 +308,15 @@ def refine(refinement: Refinement, solver: Solver, progress: Progress, label: st
             only = tuple(q for q in wanted if q in requested)
         setting = mesh_words(options) + (f", for {few(only)}" if only else "")
         progress(f"{label}: {setting}")
-        with listening(announce):
-            solved = solver.solve(options)
+        try:
+            with listening(announce):
+                solved = solver.solve(options)
+        except MeshError as error:
+            # elements that are large beside a small face fold, which smaller ones need not
+            if refinement.levels or refinement.model.follows:
+                raise
+            failed = failed or error
+            continue
         refinement.add(solved, options, requested)
         bar = refinement.largest()
         refinement.steps.append(
@@ -320,6 +340,9 @@ def refine(refinement: Refinement, solver: Solver, progress: Progress, label: st
         if reason := refinement.in_vain():
             refinement.end(reason)
             return
+        progress(f"{label}: so far {refinement.so_far()}")
+    if failed is not None and not refinement.levels:
+        raise failed
     refinement.end(refinement.no_further_mesh())
 
 
@@ -350,10 +373,19 @@ def _meshes(refinement: Refinement) -> Iterator[Mapping[str, Any]]:
 def _listed(
     refinement: Refinement, levels: Sequence[Mapping[str, Any]]
 ) -> Iterator[Mapping[str, Any]]:
-    """Yield meshes of a list, without those that can be seen to be too coarse."""
-    place = 0
+    """Yield meshes of a list, without those that can be seen to be too coarse; until one could be made,
+    those that add nothing to the cells of the first.
+    """
+    place, failed = 0, None
     while place < len(levels):
-        yield levels[place]
+        level = levels[place]
+        if not refinement.levels:
+            level = {name: level[name] for name in levels[0]}
+            if level == failed:
+                place += 1
+                continue
+            failed = level
+        yield level
         too_wide = max(map(refinement.doubt, refinement.unmet()), default=0.0) / refinement.tol
         jump = math.log(too_wide) / math.log(FALL) if 1 < too_wide < math.inf else 1.0
         place = max(place + 1, min(place + math.floor(jump), len(levels) - 1))

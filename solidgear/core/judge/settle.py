@@ -33,7 +33,14 @@ from solidgear.core.judge.bounded import (
 )
 from solidgear.core.judge.quantities import at_points, between
 from solidgear.core.judge.question import FamilySolver, Listing, build_families
-from solidgear.core.judge.refinement import FINER_FILE, NO_FINER, Progress, Refinement, mesh_words
+from solidgear.core.judge.refinement import (
+    FINER_FILE,
+    INTERRUPTED,
+    NO_FINER,
+    Progress,
+    Refinement,
+    mesh_words,
+)
 from solidgear.core.judge.steps import Step
 from solidgear.core.ladder import build
 from solidgear.core.ladder.registry import LADDER
@@ -239,6 +246,11 @@ def _settled_body(
                 raise
             reason = f"the next mesh could not be solved: {error or 'not enough memory'}"
             steps[-1] = replace(steps[-1], why=reason, chosen=True)
+            break
+        except KeyboardInterrupt:
+            if not steps:
+                raise
+            steps[-1] = replace(steps[-1], why=INTERRUPTED, chosen=True)
             break
         options = level
         largest = max(bars.values(), default=math.inf)

@@ -169,6 +169,10 @@ class Solid(Volume):
             files = range(len(body.coarser), -1, -1)
             return Sequence(tuple({**full_options, "coarser": k} for k in files), False)
         sequence = self.meshes(full_options)
+        if body is not None and body.kind == "step" and not sequence.fixed:
+            # layers double or treble the unknowns of edges that are many, for a bar narrower by a third
+            first = _without_layers(sequence.levels[0])
+            sequence = replace(sequence, levels=(first, *sequence.levels))
         if full_options.get("element") != "tet10" or _has_lines(scene, full_options):
             return sequence
         return replace(sequence, levels=tuple(_without_layers(k) for k in sequence.levels))

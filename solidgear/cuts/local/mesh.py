@@ -29,7 +29,7 @@ if TYPE_CHECKING:
 #: edges of elements: of the largest, in outer radii, and on the bore in its own; at a hole and at
 #: the root of a keyway, in their radii; at the ends of a keyway, in half its width
 BULK, AT_HOLE, AT_ROOT, AT_END = 0.5, 0.5, 1.5, 0.5
-#: growth of edges per distance from a hole or an end, from a root, and from a place of largest stress
+#: growth of edges per distance from a hole or an end, from a root, and from places of large stress
 GROWTH, FROM_ROOT, NEAR_PEAK = 0.6, 1.0, 0.5
 #: gmsh's number of the mesher of volumes: at steep changes of size along a thin root the usual one
 #: has been seen to look for a boundary without end
@@ -91,19 +91,27 @@ class LocalShape:
         return self.cut.diameter / 2 if isinstance(self.cut, CrossHole) else self.radius
 
 
-Peak = tuple[np.ndarray, float]
-"""Place (3,) of a large stress, m from the middle, and the edge of elements there, m."""
+Places = tuple[np.ndarray, float]
+"""Places (3, m) of large stress, m from the middle, and the edge of elements there, m."""
 
 
-def local_mesh(shape: LocalShape, peaks: Sequence[Peak] = ()) -> SolidMesh:
+def local_mesh(shape: LocalShape, places: Sequence[Places] = ()) -> SolidMesh:
     """Mesh the piece around a cut, about its middle, with smaller elements at some places."""
     gmsh = import_gmsh()
     with Session(gmsh):
         occ = gmsh.model.occ
         piece = _drawn(occ, shape)
+        tags = [_points(occ, *group, shape.middle) for group in places]
         occ.synchronize()
         volume = occ.getMass(3, piece)
-        set_size(gmsh, _sizes(shape, peaks), BULK * shape.outer)
+        sizes = _sizes(shape)
+        for points, (_, edge) in zip(tags, places):
+            distance = gmsh.model.mesh.field.add("Distance")
+            gmsh.model.mesh.field.setNumbers(distance, "PointsList", points)
+            sizes.append(f"{_num(edge)}+{_num(NEAR_PEAK)}*F{distance}")
+        # an arc must not bulge through a thin wall: height edge^2 / 8r
+        thin = math.sqrt(1 - shape.inner / shape.outer)
+        set_size(gmsh, sizes, min(BULK, thin) * shape.outer)
         gmsh.option.setNumber("Mesh.Algorithm3D", HXT)
         filling = filled(
             gmsh,
@@ -114,6 +122,12 @@ def local_mesh(shape: LocalShape, peaks: Sequence[Peak] = ()) -> SolidMesh:
     mesh = filling.mesh
     mesh.doflocs[1] -= shape.middle
     return _isoparametric(mesh, "tet10", np.zeros(mesh.t.shape[1], int))
+
+
+def _points(occ: Any, places: np.ndarray, edge: float, middle: float) -> list[int]:
+    """Draw one point in every cube of an edge that some places (3, m) lie in; return their tags."""
+    _, first = np.unique(np.round(places / edge), axis=1, return_index=True)
+    return [occ.addPoint(x, y + middle, z) for x, y, z in places[:, first].T]
 
 
 def _drawn(occ: Any, shape: LocalShape) -> int:
@@ -209,8 +223,8 @@ def _edges(occ: Any, face: int) -> list[int]:
     return [int(edge) for loop in loops for edge in loop]
 
 
-def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
-    """Return formulas of the element edge: at the cut, and at places of large stress."""
+def _sizes(shape: LocalShape) -> list[str]:
+    """Return formulas of the element edge at the cut."""
     cut, frame = shape.cut, Frame("x", "z", _num)
     if isinstance(cut, Keyway):
         away, _ = cut.from_edges(shape.outer, frame)
@@ -227,9 +241,6 @@ def _sizes(shape: LocalShape, peaks: Sequence[Peak]) -> list[str]:
     if shape.inner:
         away = f"Sqrt((Sqrt(x^2+z^2)-{_num(shape.inner)})^2)"
         formulas.append(f"{_num(BULK * shape.inner)}+{_num(GROWTH)}*{away}")
-    for place, size in peaks:
-        x, y, z = (_num(value) for value in place + [0.0, shape.middle, 0.0])
-        formulas.append(f"{_num(size)}+{_num(NEAR_PEAK)}*Sqrt((x-{x})^2+(y-{y})^2+(z-{z})^2)")
     return formulas
 
 

@@ -10,9 +10,9 @@ makes every load even or odd, so that a part of the piece is enough:
     bending about z   odd     even     even
     torsion           odd     odd      odd
 
-Meshes are refined towards the largest stress of each load until error bars are met. The error bar
+Meshes are refined where the largest stress of each load may lie until error bars are met. The error bar
 counts the change from the mesh before, and the traction that is left on the free surface where the
-stress is largest.
+largest stress may lie.
 """
 
 from __future__ import annotations
@@ -30,7 +30,8 @@ from solidgear.core.kernel.assembly import Tabulation
 from solidgear.core.models.solid.block import rigid_motions
 from solidgear.core.models.solid.matrices import integrals
 from solidgear.core.solve.factor import factorise
-from solidgear.cuts.local.mesh import LocalShape, Peak, local_mesh
+from solidgear.core.solve.inertia_relief import ratio
+from solidgear.cuts.local.mesh import LocalShape, Places, local_mesh
 from solidgear.cuts.local.surface_stress import (
     SurfaceStress,
     larger,
@@ -63,7 +64,8 @@ class PeakStress:
 
     value: float
     place: np.ndarray  #: (3,) m, y from the middle of the cut
-    #: left on the surface there, of which the largest shear has the share that it has in stress
+    #: root mean square of what is left on the surface wherever it may lie, of which the largest shear
+    #: has the share that it has in stress
     traction: float
     gradient: float  #: relative, into the material, 1/m
 
@@ -78,6 +80,9 @@ class LocalSolution:
     #: turning shaft, largest shear stress under torsion
     fields: Mapping[str, np.ndarray] = field(repr=False)
     peaks: Mapping[str, PeakStress]
+    #: (3, k) where the largest stress of a load may lie: with the traction left there no less than the
+    #: largest without it
+    leading: np.ndarray = field(repr=False)
 
 
 class Elastic(NamedTuple):
@@ -88,7 +93,7 @@ class Elastic(NamedTuple):
     density: float = 1.0
 
 
-def solution_on(shape: LocalShape, nu: float, places: Sequence[Peak] = ()) -> LocalSolution:
+def solution_on(shape: LocalShape, nu: float, places: Sequence[Places] = ()) -> LocalSolution:
     """Solve a piece around a cut on one mesh, with smaller elements at some places, by Poisson's
     ratio.
     """
@@ -107,13 +112,25 @@ def solution_on(shape: LocalShape, nu: float, places: Sequence[Peak] = ()) -> Lo
     }
     worst = planes[turned.max(axis=1).argmax()]
     weights = dict(zip(fields, (np.eye(4)[tension], worst, np.eye(4)[torsion])))
-    peaks = {
-        load: _peak(surface.combined(w[None]), load, fields[load]) for load, w in weights.items()
-    }
-    return LocalSolution(moved.shape[0], surface.x, fields, peaks)
+    peaks, leading = {}, np.zeros(surface.x.shape[1], bool)
+    for load, w in weights.items():
+        loaded, values = surface.combined(w[None]), fields[load]
+        left = _left(loaded, values)
+        possible = values + left >= (values - left).max()
+        peaks[load] = _peak(loaded, load, values, float(np.sqrt((left[possible] ** 2).mean())))
+        leading |= possible
+    return LocalSolution(moved.shape[0], surface.x, fields, peaks, surface.x[:, leading])
 
 
-def _peak(surface: SurfaceStress, load: str, values: np.ndarray) -> PeakStress:
+def _left(surface: SurfaceStress, values: np.ndarray) -> np.ndarray:
+    """Return the traction (m,) left on a surface, of which values have the share that they have in the
+    largest stress there.
+    """
+    largest = np.abs(np.linalg.eigvalsh(surface.sigma[0])).max(axis=1)
+    return ratio(surface.traction[0] * values, largest)
+
+
+def _peak(surface: SurfaceStress, load: str, values: np.ndarray, left: float) -> PeakStress:
     """Return the largest of values (m,) on a surface, with what goes with it."""
     node = int(values.argmax())
     sigma, slope = surface.sigma[0, node], surface.slope[0, node]
@@ -125,8 +142,7 @@ def _peak(surface: SurfaceStress, load: str, values: np.ndarray) -> PeakStress:
     else:
         largest = int(np.abs(stress).argmax())
         gradient = along[largest] / stress[largest]
-    traction = float(surface.traction[0, node] * values[node] / np.abs(stress).max())
-    return PeakStress(float(values[node]), surface.x[:, node], traction, float(gradient))
+    return PeakStress(float(values[node]), surface.x[:, node], left, float(gradient))
 
 
 def lame_of(nu: float) -> tuple[float, float]:

@@ -1,8 +1,9 @@
 r"""Stress concentration of keyways and cross holes, by 3D solids refined until error bars are met.
 
-Each mesh has smaller elements where the one before had the largest stress of each load. The error
-bar of a factor is the sum of its change from the mesh before and of the traction left on the free surface
-where the stress is largest, over nominal stress; and at least 2e-2 of it.
+Each mesh has smaller elements wherever the largest stress of a load may lie by the one before: along
+a hole under tension, or its mouth, stress is so even that the largest place of a coarse mesh is any.
+Elements that were small stay so. The error bar of a factor is the sum of its change from the mesh before and of the traction left on the free surface
+in these places (root mean square), over nominal stress; and at least 2e-2 of it.
 
 `python -m validation.campaign notches` holds error bars against finer meshes. Nominal stress is that
 of DIN 743-2: for a keyway that of the plain shaft; for a hole of diameter b that of the section left,
@@ -24,7 +25,7 @@ import numpy as np
 from solidgear.core import SolidgearError
 from solidgear.cuts.features.cross_hole import CrossHole
 from solidgear.cuts.features.keyway import Keyway
-from solidgear.cuts.local.mesh import LocalShape
+from solidgear.cuts.local.mesh import LocalShape, Places
 from solidgear.cuts.local.solid import LocalSolution, PeakStress, solution_on
 from solidgear.strength.stress.nominal import CrossSection, NominalStress
 
@@ -34,8 +35,8 @@ if TYPE_CHECKING:
 
 #: default relative error bar of a factor
 ENOUGH = 0.05
-#: edges of elements at the largest stress, in radii of the notch, mesh by mesh
-SIZES = (None, 0.3, 0.18, 0.1)
+#: edges of elements where stress is largest, in radii of the notch, mesh by mesh
+SIZES = (None, *(0.3 * 0.6**k for k in range(7)))
 #: of a factor: error bars are no less
 FLOOR = 2e-2
 #: error bar of a gradient: multiple of its change with the last mesh, and its least share
@@ -219,10 +220,10 @@ def _solved(
 ) -> tuple[LocalSolution, ...]:
     """Solve a cut mesh by mesh until the error bars of all loads are within a tolerance."""
     solutions: list[LocalSolution] = []
+    places: list[Places] = []
     for size in sizes:
-        places = []
         if size is not None:
-            places = [(p.place, size * shape.size) for p in solutions[-1].peaks.values()]
+            places.append((solutions[-1].leading, size * shape.size))
         try:
             solutions.append(solution_on(shape, nu, places))
         except SolidgearError:  # of a mesh that cannot be made

@@ -6,6 +6,7 @@ line in ``SOLIDS``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, fields
 from typing import TYPE_CHECKING, Any, TypeAlias
@@ -179,7 +180,10 @@ def _remarks(
     if near:
         yield f"not in its solid: {listed(near)}"
     if concentration.widest > tolerance:
-        yield f"error bar {100 * concentration.widest:.2g} %, above the {100 * tolerance:.2g} % asked for"
+        yield (
+            f"error bar {100 * concentration.widest:.2g} %, above the {100 * tolerance:.2g} % asked for, "
+            f"by the finest mesh here: allow {math.ceil(100 * concentration.widest)} %"
+        )
 
 
 @dataclass(frozen=True)

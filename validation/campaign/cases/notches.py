@@ -16,8 +16,8 @@ from validation.campaign.case import Case, Run
 from validation.campaign.rows import DECIDED, Cost, Found, Said, Truth, held
 from validation.campaign.scenes.shafts import between
 
-#: edges of elements of the meshes that are taken for the truth, beyond those in use
-FINE = (0.07,)
+#: meshes that are solved for the truth beyond those in use
+FURTHER = 2
 #: of grooves: orders and refinement
 ORDERS, FINER = (5, 6), 1.6
 #: tolerance that no mesh reaches
@@ -59,7 +59,7 @@ def judged(seed: int, tolerance: float) -> Found:
         cut = _hole(rng) if kind == "hole" else _keyway(rng, (DIAMETER - bore) / 2)
         found = local_factors(shaft, cut, tolerance)
         cost = time.process_time() - start
-        fine = local_factors(shaft, cut, ALL, sizes=(*SIZES, *FINE))
+        fine = local_factors(shaft, cut, ALL, sizes=SIZES[: len(found.steps) + FURTHER])
     out.costs.append(Cost(body, {"kind": kind}, cost))
     before, last = (step.factors for step in fine.steps[-2:])
     for load in LOADS:
