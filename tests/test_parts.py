@@ -22,6 +22,7 @@ from solidgear.cuts.features import Keyway
 from solidgear.guards import check, round_part
 from solidgear.parts.mesh_file import mesh_from
 from solidgear.parts.own_mesh import solid_body
+from solidgear.parts.round_part import Frustum, _joined
 from solidgear.parts.round_part import _evened as round_radii
 from solidgear.parts.round_part import _joined as joined
 from solidgear.show.outputs import node_order
@@ -605,3 +606,16 @@ def test_slices_of_one_section_are_one_segment():
     assert len(joined(walls, 1e-6)) == 1
     # a taper is none
     assert not np.ptp(round_radii(np.array([[30.0, 16.0], [29.0, 16.0]]))[:, 0]) == 0
+
+
+def test_mean_radii_that_differ_by_rounding_are_one():
+    """A splined bore under two shoulders: slices of one section left a step of 1 nm, which no mesh holds."""
+    bores = (0.0168983, 0.0168983 + 1e-9, 0.0168983 - 3e-9)
+    outer, places = (0.03, 0.05, 0.03), (0.0, 0.015, 0.025, 0.045)
+    walls = [
+        Frustum(y0, y1, radius, radius, bore, bore)
+        for y0, y1, radius, bore in zip(places, places[1:], outer, bores)
+    ]
+    joined = _joined(walls, near=2e-6 * 0.045)
+    assert {wall.inner0 for wall in joined} | {wall.inner1 for wall in joined} == {bores[0]}
+    assert [wall.outer0 for wall in joined] == [*outer]

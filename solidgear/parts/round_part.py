@@ -335,10 +335,15 @@ def _evened(radii: np.ndarray) -> np.ndarray:
 
 def _joined(walls, near) -> list[Frustum]:
     """Join neighbours on one line to one wall: a cut that a bore made is none for the outer
-    surface, but both must be in line.
+    surface, but both must be in line. Radii of mean circles that differ by rounding are one.
     """
     out: list[Frustum] = []
     for wall in walls:
+        if out:
+            last = out[-1]
+            outer = _going_on(last.outer1, wall.outer0, wall.outer1, near)
+            inner = _going_on(last.inner1, wall.inner0, wall.inner1, near)
+            wall = Frustum(wall.y0, wall.y1, *outer, *inner)
         if out and _in_line(out[-1], wall):
             before = out.pop()
             wall = Frustum(
@@ -346,6 +351,13 @@ def _joined(walls, near) -> list[Frustum]:
             )
         out.append(wall)
     return out
+
+
+def _going_on(before: float, start: float, end: float, near: float) -> tuple[float, float]:
+    """Return the radii of a wall, m, from that which the wall before ends with if it is as near."""
+    if abs(start - before) > near:
+        return start, end
+    return before, before if start == end else end
 
 
 def _in_line(a: Frustum, b: Frustum) -> bool:
