@@ -22,7 +22,6 @@ from solidgear.cuts.features import Keyway
 from solidgear.guards import check, round_part
 from solidgear.parts.mesh_file import mesh_from
 from solidgear.parts.own_mesh import solid_body
-from solidgear.parts.round_part import Frustum, _joined
 from solidgear.parts.round_part import _evened as round_radii
 from solidgear.parts.round_part import _joined as joined
 from solidgear.show.outputs import node_order
@@ -616,6 +615,6 @@ def test_mean_radii_that_differ_by_rounding_are_one():
         Frustum(y0, y1, radius, radius, bore, bore)
         for y0, y1, radius, bore in zip(places, places[1:], outer, bores)
     ]
-    joined = _joined(walls, near=2e-6 * 0.045)
-    assert {wall.inner0 for wall in joined} | {wall.inner1 for wall in joined} == {bores[0]}
-    assert [wall.outer0 for wall in joined] == [*outer]
+    walls = joined(walls, near=2e-6 * 0.045)
+    assert {wall.inner0 for wall in walls} | {wall.inner1 for wall in walls} == {bores[0]}
+    assert [wall.outer0 for wall in walls] == [*outer]
