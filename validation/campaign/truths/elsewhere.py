@@ -31,8 +31,9 @@ CONCAVE, INSIDE = 0.55, 0.97
 #: order of the error in sizes of cells: 2 a, with exponents a of 0.5 at the ends of rigid seats and 0.5445
 #: at right-angled edges
 ORDER = 1.05
-#: doubt over the step beyond the second mesh: shafts of revolution were off by 0.15 of it
-DOUBT = 0.35
+#: doubt over the step beyond the second mesh: a shaft of revolution was off by 0.15 of it, halves of
+#: thin sleeves by 0.8
+DOUBT = 1.0
 #: cells around a full circle where cells have the size of the drawing, and at least
 AROUND, FEWEST = 12, 6
 #: cells of the finest mesh
