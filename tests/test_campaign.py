@@ -505,12 +505,14 @@ def test_a_frequency_lies_between_the_values_and_the_lower_ends_of_its_place():
                 ("rigid 1", 0.0, 1),
                 ("bending 1", 100.0, 2),
                 ("axial 1", 104.0, 1),
+                ("torsion 1", 105.0, 1),
+                ("axial 2", 106.0, 1),
             )
         ]
     )
     bars = {
         name: ErrorBar(width, width, 1.25, 0.0, 0.0)
-        for name, width in (("bending 1", 0.01), ("axial 1", 0.1))
+        for name, width in (("bending 1", 0.01), ("axial 1", 0.1), ("axial 2", 0.5))
     }
     found = solids.ascending({Quantity(name): bar for name, bar in bars.items()}, modes)
     assert found == {

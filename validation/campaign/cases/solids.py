@@ -13,6 +13,7 @@ import json
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -332,7 +333,9 @@ def ascending(bars: dict[Quantity, ErrorBar], modes: ModeSet) -> dict[str, tuple
     """The k-th frequency, Hz, and the k-th of the lower ends of all: where every mode lies within its
     bar, the k-th of the body lies between them, whatever its shape.
     """
-    listed = [m for m in modes.modes if m.frequency_hz > 0 and m.name in bars for _ in m.vectors]
+    elastic = [m for m in modes.modes if m.frequency_hz > 0]
+    known = takewhile(lambda m: m.name in bars, elastic)  # beyond, places are not known
+    listed = [m for m in known for _ in m.vectors]
     values = sorted(m.frequency_hz for m in listed)
     lows = sorted(m.frequency_hz * (1 - bars[Quantity(m.name)].width) for m in listed)
     return dict(zip(FREQUENCIES, zip(values, lows)))

@@ -31,10 +31,11 @@ CONCAVE, INSIDE = 0.55, 0.97
 #: order of the error in sizes of cells: 2 a, with exponents a of 0.5 at the ends of rigid seats and 0.5445
 #: at right-angled edges
 ORDER = 1.05
-#: doubt over the step beyond the second mesh: shafts of revolution were off by 0.15 of it
-DOUBT = 0.35
-#: cells around a full circle
-AROUND = 12
+#: doubt over the step beyond the second mesh: a shaft of revolution was off by 0.15 of it, halves of
+#: thin sleeves by 0.8
+DOUBT = 1.0
+#: cells around a full circle where cells have the size of the drawing, and at least
+AROUND, FEWEST = 12, 6
 #: cells of the finest mesh
 LEAST, MOST = 5_000, 8_500
 
@@ -153,7 +154,8 @@ def meshed(drawing: Drawing, size: float) -> Any:
         field.setNumber(distance, "Sampling", 60)
         field.setString(law, "F", f"Min({size}, {AT_EDGES * size} + {GROWS} * F{distance})")
         field.setAsBackgroundMesh(law)
-        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", AROUND)
+        around = max(FEWEST, AROUND * drawing.size / size)  # in proportion: both meshes are alike
+        gmsh.option.setNumber("Mesh.MeshSizeFromCurvature", around)
         gmsh.option.setNumber("Mesh.HighOrderOptimize", 2)  # no cell is turned inside out
         gmsh.model.mesh.generate(3)
         tags, places, _ = gmsh.model.mesh.getNodes()

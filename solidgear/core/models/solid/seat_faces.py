@@ -31,6 +31,8 @@ ON_SURFACE = 2e-5
 CURVED = 0.3
 #: distance from a surface, over its radius, within which a face is meant to be on it
 MEANT = 2e-4
+#: of radii, how far those of one cylinder may differ
+SAME = 1e-9
 #: share of a seat that faces close to it, but off it, may have
 LOST = 0.01
 
@@ -41,7 +43,7 @@ class Seats:
     """
 
     def __init__(self, mesh: SolidMesh, segments: Sequence[Segment], clipped: bool) -> None:
-        self.mesh, self.segments, self.clipped = mesh, segments, clipped
+        self.mesh, self.segments, self.clipped = mesh, _surfaces(segments), clipped
         # teeth may leave no segment of revolution
         self.length = segments[-1].y1 if len(segments) else float(mesh.mesh.p[1].max())
         self.corners = mesh.mesh.facets[:, mesh.boundary]
@@ -125,6 +127,24 @@ class Seats:
         if s not in self._by_segment:
             self._by_segment[s] = _lateral(self.mesh, self.corners, self._along(s, ON_SURFACE), s)
         return self._by_segment[s]
+
+
+def _surfaces(segments: Sequence[Segment]) -> list[Segment]:
+    """Return segments joined where the outer surface goes on as a cylinder: a bore or a hole within a part
+    from a file begins there, of which its surface has no line.
+    """
+    surfaces: list[Segment] = []
+    for s in segments:
+        radii = [
+            s.outer0,
+            s.outer1,
+            *([surfaces[-1].outer0, surfaces[-1].outer1] if surfaces else []),
+        ]
+        if surfaces and np.allclose(radii, radii[0], rtol=SAME, atol=0.0):
+            surfaces[-1] = surfaces[-1].with_changes(y1=s.y1)
+        else:
+            surfaces.append(s)
+    return surfaces
 
 
 def _outer(s, y):
