@@ -176,7 +176,7 @@ def test_areas_and_volumes_may_go_without_a_sign_of_power(young, density):
     steel = sg.Material(E=young, nu=0.3, density=density)
     assert (steel.E, steel.density) == pytest.approx((210e9, 7850.0))
     schema = json.loads(
-        Path(sg.__file__).with_name("exchange").joinpath("schema/scene.json").read_text()
+        Path(sg.__file__).with_name("show").joinpath("schema/scene.json").read_text()
     )
     patterns = schema["properties"]["material"]["properties"]
     assert re.fullmatch(patterns["E"]["pattern"], young)

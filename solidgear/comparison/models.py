@@ -160,7 +160,7 @@ def compare(
 @pinned
 def compare(
     source: Source,
-    models: Any = None,
+    models: Source | tuple[str, ...] | None = None,
     *,
     settings: dict[str, dict] | None = None,
     progress: Progress = lambda _: None,

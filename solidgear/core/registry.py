@@ -11,8 +11,6 @@ from functools import cache
 from importlib import import_module
 from typing import Any
 
-from solidgear.core.errors import SolidgearError
-
 _PLACES: dict[str, dict[str, str]] = {}
 
 
@@ -53,6 +51,10 @@ def needed(kind: str, name: str, what: str) -> Any:
     """Return an addition that `what` cannot do without; refuse where its room is not there."""
     found = addition(kind, name)
     if found is None:
+        from solidgear.core.errors import (
+            SolidgearError,
+        )  # start-up: a process that draws does without
+
         raise SolidgearError(f"{what} {absent(kind, name)}")
     return found
 

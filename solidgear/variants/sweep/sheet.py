@@ -206,7 +206,7 @@ def _sheet(
     before = f"; {result.skipped} more were there already" if result.skipped else ""
     run = [f"{path}: all {result.total} rows were there already."]
     if new:
-        run = [f"Wrote {new} row{'s' * (new != 1)} to {path}{before}.", solved]
+        run = [f"Wrote {_counted(new, 'row')} to {path}{before}.", solved]
     drawn = [] if chart is None else [f"Chart: {chart if charts else 'none'}"]
     return Sheet(
         name="sweep",
@@ -229,11 +229,15 @@ def _sheet(
     )
 
 
+def _counted(number: int, noun: str) -> str:
+    return f"{number} {noun}" if number == 1 else f"{number} {noun}s"
+
+
 def _solved(result: Swept) -> str:
     """Return the sentence on the variants of this run and their time."""
     new, seconds = result.total - result.skipped, result.seconds
     each = 1e3 * seconds / max(new, 1)
-    return f"{new} variant{'s' * (new != 1)} in {seconds:.1f} s, {each:.0f} ms each; {result.refused} refused."
+    return f"{_counted(new, 'variant')} in {seconds:.1f} s, {each:.0f} ms each; {result.refused} refused."
 
 
 def _caution_on_parting(result: Swept) -> list[str]:
