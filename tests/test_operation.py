@@ -98,8 +98,9 @@ def test_ctrl_c_in_the_middle_of_a_factorisation(name, tmp_path, monkeypatch):
     finally:
         child.kill()
     text = "".join(said) + err
-    assert child.returncode == 130, text
-    assert "interrupted" in err and "Traceback" not in text
+    kept = name in ("modes", "stiffness")  # numbers of the mesh before
+    assert child.returncode == (3 if kept else 130), text
+    assert "interrupted" in (out if kept else err) and "Traceback" not in text
     left = {str(p.relative_to(tmp_path)) for p in tmp_path.rglob("*") if p.is_file()}
     if name == "compare":  # what was solved before is kept
         assert left == {"out/results.json", "out/report.html"} and all(

@@ -12,6 +12,7 @@ import typer
 from solidgear.core import LADDER, OpenNumbers, Scene, SolidgearError
 from solidgear.core.judge.answer import Answered, Step
 from solidgear.core.judge.answer import answer as solve
+from solidgear.core.judge.refinement import Interrupted
 from solidgear.core.judge.steps import ABOVE, BELOW
 from solidgear.core.models.kinds import PARTS
 from solidgear.core.plain import plain
@@ -74,7 +75,10 @@ def answer(
     units = units_named(run.units)
 
     def study(progress: Progress) -> Sheet:
-        answered = solve(loaded, tol, ask, progress=progress)
+        try:
+            answered = solve(loaded, tol, ask, progress=progress)
+        except Interrupted as stop:  # what a coarser mesh gave is shown
+            answered = stop.result
         progress("what the data leave open")
         open_ = open_ranges(loaded)
         places: WhereRecord | str = ""

@@ -232,12 +232,17 @@ class Solved(Chosen):
         """
         if not self.refined and not self.automatic(scene):
             return build_body(scene, self.name, self.pairs), None
-        from solidgear.core import settle  # start-up: for ``auto`` alone
+        # start-up: for ``auto`` alone
+        from solidgear.core import settle
+        from solidgear.core.judge.refinement import Interrupted
 
         # a second or less for most scenes: lines are for those who watch
         watched = progress if sys.stderr.isatty() else Progress(quiet=True)
         only = self.name if self.refined else ""
-        settled = settle(scene, self.tol, ask, points=points, only=only, progress=watched)
+        try:
+            settled = settle(scene, self.tol, ask, points=points, only=only, progress=watched)
+        except Interrupted as stop:  # what a coarser mesh gave is shown
+            settled = stop.result
         return settled.body, settled
 
 

@@ -24,7 +24,7 @@ from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.cautions import number_cautions
 from solidgear.core.judge.quantities import canonical_name, judged
 from solidgear.core.judge.question import FamilySolver
-from solidgear.core.judge.refinement import INTERRUPTED, Progress, Refinement, refine
+from solidgear.core.judge.refinement import INTERRUPTED, Interrupted, Progress, Refinement, refine
 from solidgear.core.judge.solving import ENOUGH
 from solidgear.core.judge.steps import Step, Value
 from solidgear.core.ladder import NO_MODEL, build, way_out
@@ -119,8 +119,7 @@ def answer(
     Returns
     -------
     Answered
-        After the last mesh that could be solved, or was before Ctrl-C; ``reached`` says whether it is
-        within the tolerance.
+        After the last mesh that could be solved; ``reached`` says whether it is within the tolerance.
 
     Raises
     ------
@@ -142,10 +141,14 @@ def answer(
     start = time.perf_counter()
     tol = read_tolerance(scene.ask.tolerance if tol is None else tol)
     wanted = asked_for(scene, ask)
-    solver, steps = solve_cheapest(scene, tol, wanted, progress)
+    stopped = False
+    try:
+        solver, steps = solve_cheapest(scene, tol, wanted, progress)
+    except Interrupted as stop:
+        (solver, steps), stopped = stop.result, True
     values, rung = solver.refinement.values(), solver.refinement.model.name
     existing = {v.quantity for v in values}
-    return Answered(
+    found = Answered(
         scene=scene.name,
         tolerance=tol,
         values=values,
@@ -156,6 +159,9 @@ def answer(
         cautions=tuple(number_cautions(scene, {v.quantity: v.bar for v in values}, rung)),
         seconds=time.perf_counter() - start,
     )
+    if stopped:
+        raise Interrupted(found)
+    return found
 
 
 def solve_cheapest(
@@ -209,6 +215,7 @@ def solve_cheapest(
                 if not refinement.levels:
                     raise
                 refinement.end(INTERRUPTED)
+                raise Interrupted((solver, steps + refinement.steps)) from None
             return solver, steps + refinement.steps
     models: dict[str, list[str]] = {}
     way = way_out(scene)

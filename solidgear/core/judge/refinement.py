@@ -43,6 +43,15 @@ NO_FINER = "there is no finer mesh in the list"
 FINER_FILE = "list a finer mesh beside those of the file"
 INTERRUPTED = "interrupted on a finer mesh"
 
+
+class Interrupted(KeyboardInterrupt):
+    """Ctrl-C after a mesh was solved: a command shows its result, whatever else solves ends."""
+
+    def __init__(self, result: Any):
+        super().__init__()
+        self.result = result
+
+
 #: a bar has one side where the solver has left no more than this share of it
 SOLVER_SHARE = 0.01
 #: ratio of the largest bar to that two meshes before, above which finer meshes do not help

@@ -37,6 +37,7 @@ from solidgear.core.judge.refinement import (
     FINER_FILE,
     INTERRUPTED,
     NO_FINER,
+    Interrupted,
     Progress,
     Refinement,
     mesh_words,
@@ -178,12 +179,18 @@ def settle(
 
         return FamilySolver(refinement, build_body, listing)
 
-    solver, steps = solve_cheapest(scene, tol, wanted, progress, solver_of, whole=True, only=only)
+    stopped = False
+    try:
+        solver, steps = solve_cheapest(
+            scene, tol, wanted, progress, solver_of, whole=True, only=only
+        )
+    except Interrupted as stop:
+        (solver, steps), stopped = stop.result, True
     refinement = solver.refinement
     assert refinement.body is not None  # a model without a single mesh is passed over
     bars = refinement.bars()
     judged = bool(bars) or ask == "stiffness"
-    return Settled(
+    found = Settled(
         scene=scene.name,
         tolerance=tol,
         rung=refinement.model.name,
@@ -196,6 +203,9 @@ def settle(
         point=_main_point(scene),
         mesh=refinement.mesh if refinement.model.follows else None,
     )
+    if stopped:
+        raise Interrupted(found)
+    return found
 
 
 def bars_of_modes(
@@ -228,7 +238,7 @@ def _settled_body(
     """Settle a body without an axis on the first mesh whose error bars of the lowest modes, and of
     statics at some points, are within a tolerance: of a block on meshes made here, else of its files.
     """
-    steps: list[Step] = []
+    steps, stopped = list[Step](), False
     assert scene.body is not None  # that is without an axis
     block = scene.body.kind == "block"
     files = len(scene.body.coarser)
@@ -251,6 +261,7 @@ def _settled_body(
             if not steps:
                 raise
             steps[-1] = replace(steps[-1], why=INTERRUPTED, chosen=True)
+            stopped = True
             break
         options = level
         largest = max(bars.values(), default=math.inf)
@@ -274,7 +285,7 @@ def _settled_body(
         )
         if chosen:
             break
-    return Settled(
+    found = Settled(
         scene=scene.name,
         tolerance=tol,
         rung=MODEL,
@@ -286,6 +297,9 @@ def _settled_body(
         missing=(),
         point=_main_point(scene),
     )
+    if stopped:
+        raise Interrupted(found)
+    return found
 
 
 def _judged_body(

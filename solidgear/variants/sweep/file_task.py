@@ -222,16 +222,17 @@ class FileTask(Task[Swept]):
     """Turns variants of files, each solved by itself, into rows."""
 
     @cached_property
-    def _read(self) -> dict[int, Any]:
-        """The variant that was read last, by its number."""
+    def _read(self) -> dict[bytes, Any]:
+        """The variant that was read last, by its values."""
         return {}
 
     def variant(self, index: int) -> Any:
         """Return a variant; numbers and cautions of a row read it once."""
-        if index not in self._read:
+        values = self.variants.values[index].tobytes()
+        if values not in self._read:
             self._read.clear()
-            self._read[index] = self.variants.variant(index)
-        return self._read[index]
+            self._read[values] = self.variants.variant(index)
+        return self._read[values]
 
     @property
     def misalignments(self) -> tuple[str, ...]:
