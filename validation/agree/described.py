@@ -245,7 +245,9 @@ def of_scene(scene: Path, tol: float | None = None) -> Iterator[Relation]:
 def _load_in_two(scene: Path) -> Iterator[Relation]:
     """Motions of the main point under a load, and under its halves at the same place."""
     loaded = sg.load(scene)
-    if loaded.is_loaded or loaded.features or loaded.body is not None or not loaded.bearings:
+    if loaded.is_loaded or loaded.features or loaded.body is not None:
+        return
+    if not (loaded.bearings and loaded.ports):
         return
     tables = loaded.to_dict()
     half = {"on": loaded.port.name, "z": 500.0, "x": 250.0}
@@ -319,7 +321,9 @@ def _clean(tables: Tables) -> Tables:
 
 def _answers(tables: Tables, tol: float | None) -> Numbers:
     """Answers of a scene; of what is free there is none."""
-    answered = sg.answer(sg.Scene.from_dict(tables), tol, ASKED)
+    scene = sg.Scene.from_dict(tables)
+    asked = ASKED if scene.ports else [name for name in ASKED if Quantity(name).is_frequency]
+    answered = sg.answer(scene, tol, asked)
     return {
         row.quantity: Number.within(row.value, row.bar * row.size, row.size, row.side)
         for row in answered.values
