@@ -51,9 +51,8 @@ def needed(kind: str, name: str, what: str) -> Any:
     """Return an addition that `what` cannot do without; refuse where its room is not there."""
     found = addition(kind, name)
     if found is None:
-        from solidgear.core.errors import (
-            SolidgearError,
-        )  # start-up: a process that draws does without
+        # start-up: a process that draws does without
+        from solidgear.core.errors import SolidgearError
 
         raise SolidgearError(f"{what} {absent(kind, name)}")
     return found
