@@ -26,7 +26,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from solidgear.core.bounds.layers import Layers
-from solidgear.core.bounds.seat_facets import seat_facets, unit_normals
+from solidgear.core.bounds.seat_facets import rim_of, seat_facets, unit_normals
 from solidgear.core.bounds.singular_places import end_exponent
 from solidgear.core.models.solid.mesh import SolidMesh
 from solidgear.core.safety import ALONG, GAP, LOAD_EDGE, REACH
@@ -120,7 +120,7 @@ def _seats(scene: Scene, body: Body, mesh: SolidMesh, layers: Layers | None) -> 
         exponent = LOAD_EDGE
         if port.attachment == "rigid" and on_patch:
             sharp = (layers or Layers.of(scene, body, mesh)).sharp
-            exponent = float(sharp.exponents_on(_rim(mesh, facets)).min(initial=LOAD_EDGE))
+            exponent = float(sharp.exponents_on(rim_of(mesh, facets)).min(initial=LOAD_EDGE))
         elif port.attachment == "rigid":
             exponent = end_exponent(scene, station, rigid)
         yield _Seat(facets, ends, width, _depth(mesh, facets), exponent)
@@ -135,7 +135,7 @@ def _gap(mesh: SolidMesh, one: _Seat, other: _Seat) -> float:
     a, b = (_normal(mesh, seat.facets) for seat in (one, other))
     if a @ b < -ALONG:
         return np.inf
-    rims = [mesh.mesh.p[:, mesh.mesh.edges[:, _rim(mesh, s.facets)]] for s in (one, other)]
+    rims = [mesh.mesh.p[:, mesh.mesh.edges[:, rim_of(mesh, s.facets)]] for s in (one, other)]
     return min(_distance(*rims), _distance(*reversed(rims)))
 
 
@@ -145,12 +145,6 @@ def _distance(ends: np.ndarray, edges: np.ndarray) -> float:
     to = ends.reshape(3, -1, 1) - start[:, None]
     place = (to * along[:, None]).sum(axis=0) / (along**2).sum(axis=0)
     return float(np.linalg.norm(to - np.clip(place, 0, 1) * along[:, None], axis=0).min())
-
-
-def _rim(mesh: SolidMesh, facets: np.ndarray) -> np.ndarray:
-    """Return the edges at which some facets end."""
-    edges, count = np.unique(mesh.mesh.f2e[:, facets], return_counts=True)
-    return edges[count == 1]
 
 
 def _normal(mesh: SolidMesh, facets: np.ndarray) -> np.ndarray:
@@ -164,7 +158,7 @@ def _width(mesh: SolidMesh, facets: np.ndarray) -> float:
     """
     m = mesh.mesh
     beside = np.setdiff1d(mesh.boundary, facets)
-    rim = _rim(mesh, facets)
+    rim = rim_of(mesh, facets)
     # the facet on either side of every edge of the rim
     inner, outer = np.full(m.edges.shape[1], -1), np.full(m.edges.shape[1], -1)
     inner[m.f2e[:, facets]], outer[m.f2e[:, beside]] = facets, beside

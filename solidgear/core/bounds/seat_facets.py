@@ -21,14 +21,14 @@ def seat_facets(scene: Scene, body: Body, mesh: SolidMesh, station: Any) -> np.n
     """
     if getattr(station, "patch", None) is not None:
         index = [port.name for port in body.ports].index(station.name)
-        on_patch = carrying(body, index)[mesh.mesh.facets[:, mesh.boundary]].all(axis=0)
+        on_patch = _carrying(body, index)[mesh.mesh.facets[:, mesh.boundary]].all(axis=0)
         return mesh.boundary[on_patch]
     if "file" in body.mesh:
         return Seats(mesh, scene.segments, clipped=True)(station, station.attachment)
     return mesh.seat(station, scene.segments, 1e-7 * scene.length)
 
 
-def carrying(body: Body, index: int) -> np.ndarray:
+def _carrying(body: Body, index: int) -> np.ndarray:
     """Return which nodes of a body in one block carry the loads on a port."""
     (block,) = body.blocks
     weights = abs(block.ports[6 * index : 6 * index + 6]).sum(axis=0)
@@ -36,6 +36,12 @@ def carrying(body: Body, index: int) -> np.ndarray:
     if block.expand is not None:
         moved = np.asarray(abs(block.expand) @ moved.astype(float)) > 0
     return np.any(moved.reshape(-1, 3), axis=1)
+
+
+def rim_of(mesh: SolidMesh, facets: np.ndarray) -> np.ndarray:
+    """Return the edges at which some facets end."""
+    edges, count = np.unique(mesh.mesh.f2e[:, facets], return_counts=True)
+    return edges[count == 1]
 
 
 def unit_normals(mesh: Any, facets: np.ndarray, cells: np.ndarray) -> np.ndarray:

@@ -10,7 +10,7 @@ import numpy as np
 
 from solidgear.core.body import Body
 from solidgear.core.bounds.layers import Layers
-from solidgear.core.bounds.seat_facets import carrying
+from solidgear.core.bounds.seat_facets import rim_of, seat_facets
 from solidgear.core.bounds.singular_places import Place, Singular, feature_exponent, singular_places
 from solidgear.core.kernel.assembly import reference
 from solidgear.core.meshing.grading import corner_length
@@ -180,15 +180,12 @@ def _ends_of_patches(
     scene: Scene, body: Body, mesh: SolidMesh
 ) -> Iterator[tuple[Patch, str, np.ndarray]]:
     """Yield the patches of a body, how each is tied, and the edges around it, where its load ends."""
-    outside = mesh.boundary
-    corners = mesh.mesh.facets[:, outside]
-    edges = mesh.mesh.f2e[:, outside]
     stations = {station.name: station for station in scene.stations}
-    for index, port in enumerate(body.ports):
-        patch = getattr(stations[port.name], "patch", None)
+    for port in body.ports:
+        station = stations[port.name]
+        patch = getattr(station, "patch", None)
         if patch is None:
             continue
-        on_patch = carrying(body, index)[corners].all(axis=0)
-        numbers, times = np.unique(edges[:, on_patch], return_counts=True)
-        if (times == 1).any():
-            yield patch, port.attachment, numbers[times == 1]
+        rim = rim_of(mesh, seat_facets(scene, body, mesh, station))
+        if len(rim):
+            yield patch, port.attachment, rim

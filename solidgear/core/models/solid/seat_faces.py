@@ -135,13 +135,10 @@ def _surfaces(segments: Sequence[Segment]) -> list[Segment]:
     """
     surfaces: list[Segment] = []
     for s in segments:
-        radii = [
-            s.outer0,
-            s.outer1,
-            *([surfaces[-1].outer0, surfaces[-1].outer1] if surfaces else []),
-        ]
-        if surfaces and np.allclose(radii, radii[0], rtol=SAME, atol=0.0):
-            surfaces[-1] = surfaces[-1].with_changes(y1=s.y1)
+        last = surfaces[-1] if surfaces else s
+        radii = [s.outer0, s.outer1, last.outer0, last.outer1]
+        if surfaces and np.allclose(radii, s.outer0, rtol=SAME, atol=0.0):
+            surfaces[-1] = last.with_changes(y1=s.y1)
         else:
             surfaces.append(s)
     return surfaces
