@@ -24,7 +24,14 @@ from solidgear.core.frames import DOF_NAMES
 from solidgear.core.judge.cautions import number_cautions
 from solidgear.core.judge.quantities import canonical_name, judged
 from solidgear.core.judge.question import FamilySolver
-from solidgear.core.judge.refinement import INTERRUPTED, Interrupted, Progress, Refinement, refine
+from solidgear.core.judge.refinement import (
+    INTERRUPTED,
+    Interrupted,
+    Progress,
+    Refinement,
+    refine,
+    uninterrupted,
+)
 from solidgear.core.judge.solving import ENOUGH
 from solidgear.core.judge.steps import Step, Value
 from solidgear.core.ladder import NO_MODEL, build, way_out
@@ -141,11 +148,10 @@ def answer(
     start = time.perf_counter()
     tol = read_tolerance(scene.ask.tolerance if tol is None else tol)
     wanted = asked_for(scene, ask)
-    stopped = False
     try:
         solver, steps = solve_cheapest(scene, tol, wanted, progress)
     except Interrupted as stop:
-        (solver, steps), stopped = stop.result, True
+        solver, steps = stop.result
     values, rung = solver.refinement.values(), solver.refinement.model.name
     existing = {v.quantity for v in values}
     found = Answered(
@@ -159,9 +165,7 @@ def answer(
         cautions=tuple(number_cautions(scene, {v.quantity: v.bar for v in values}, rung)),
         seconds=time.perf_counter() - start,
     )
-    if stopped:
-        raise Interrupted(found)
-    return found
+    return uninterrupted(found, steps)
 
 
 def solve_cheapest(

@@ -16,7 +16,7 @@ import math
 import time
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeVar
 
 import numpy as np
 
@@ -38,6 +38,7 @@ if TYPE_CHECKING:
     from solidgear.core.scene import Scene
 
 Progress = Callable[[str], None]
+R = TypeVar("R")
 #: reasons for no narrower one
 NO_FINER = "there is no finer mesh in the list"
 FINER_FILE = "list a finer mesh beside those of the file"
@@ -50,6 +51,13 @@ class Interrupted(KeyboardInterrupt):
     def __init__(self, result: Any):
         super().__init__()
         self.result = result
+
+
+def uninterrupted(result: R, steps: Sequence[Step]) -> R:
+    """Return the result of some steps; raise it where the last of them was cut off by Ctrl-C."""
+    if steps[-1].why == INTERRUPTED:
+        raise Interrupted(result)
+    return result
 
 
 #: a bar has one side where the solver has left no more than this share of it

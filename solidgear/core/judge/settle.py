@@ -41,6 +41,7 @@ from solidgear.core.judge.refinement import (
     Progress,
     Refinement,
     mesh_words,
+    uninterrupted,
 )
 from solidgear.core.judge.steps import Step
 from solidgear.core.ladder import build
@@ -179,13 +180,12 @@ def settle(
 
         return FamilySolver(refinement, build_body, listing)
 
-    stopped = False
     try:
         solver, steps = solve_cheapest(
             scene, tol, wanted, progress, solver_of, whole=True, only=only
         )
     except Interrupted as stop:
-        (solver, steps), stopped = stop.result, True
+        solver, steps = stop.result
     refinement = solver.refinement
     assert refinement.body is not None  # a model without a single mesh is passed over
     bars = refinement.bars()
@@ -203,9 +203,7 @@ def settle(
         point=_main_point(scene),
         mesh=refinement.mesh if refinement.model.follows else None,
     )
-    if stopped:
-        raise Interrupted(found)
-    return found
+    return uninterrupted(found, steps)
 
 
 def bars_of_modes(
@@ -238,7 +236,7 @@ def _settled_body(
     """Settle a body without an axis on the first mesh whose error bars of the lowest modes, and of
     statics at some points, are within a tolerance: of a block on meshes made here, else of its files.
     """
-    steps, stopped = list[Step](), False
+    steps: list[Step] = []
     assert scene.body is not None  # that is without an axis
     block = scene.body.kind == "block"
     files = len(scene.body.coarser)
@@ -261,7 +259,6 @@ def _settled_body(
             if not steps:
                 raise
             steps[-1] = replace(steps[-1], why=INTERRUPTED, chosen=True)
-            stopped = True
             break
         options = level
         largest = max(bars.values(), default=math.inf)
@@ -297,9 +294,7 @@ def _settled_body(
         missing=(),
         point=_main_point(scene),
     )
-    if stopped:
-        raise Interrupted(found)
-    return found
+    return uninterrupted(found, steps)
 
 
 def _judged_body(
